@@ -32,8 +32,18 @@ def coefficients(
         str | None, typer.Option("--name", help="Name of the new row of that table.")
     ] = None,
     waveforms: Annotated[
-        bool, typer.Option("--waveforms", help="Fit the whole waveforms too, with runout.")
-    ] = False,
+        bool,
+        typer.Option(
+            "--waveforms/--mean-forces",
+            help="Fit the whole waveforms too, with runout; or the mean forces alone.",
+        ),
+    ] = True,
+    hold_out: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--hold-out", metavar="FILE", help="Run that is predicted, not fitted; repeatable."
+        ),
+    ] = None,
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
@@ -43,7 +53,7 @@ def coefficients(
     if (table is None) != (name is None):
         raise InputError("--table and --name belong together: a row of a table, and its name")
     with progress_bar("mean forces and laws"):
-        found = identify(records, case)
+        found = identify(records, case, hold_out or ())
     if waveforms:
         with progress_bar("waveforms and runout"):
             found = found.with_waveforms()
@@ -63,7 +73,7 @@ def _print_coefficients(found: Coefficients) -> None:
         ["exponent", f"{one['value']:.3f}", f"{one['standard_deviation']:.2g}", ""]
         for one in summary["exponents"]
     ]
-    title = f"{summary['law']} law, {len(found.measurement.runs)} cuts"
+    title = f"{summary['law']} law, {summary['from']} of {len(found.measurement.runs)} cuts"
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
     if summary["holdout_error"]:
         worst = max(summary["holdout_error"].values())
@@ -72,8 +82,25 @@ def _print_coefficients(found: Coefficients) -> None:
         print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     if found.waveforms is not None:
         _print_waveforms(summary["waveforms"])
+    if summary["not_fitted"]:
+        _print_predicted(summary["not_fitted"])
     for note in summary["notes"]:
         print_notes([note])
+
+
+def _print_predicted(cuts: dict[str, Any]) -> None:
+    print_table(
+        "cuts that were not fitted",
+        ["run", "channel", "mean [N]", "predicted", "peak-to-peak [N]", "predicted"],
+        [
+            [
+                run, channel, f"{one['mean_N']:.1f}", f"{one['mean_predicted_N']:.1f}",
+                f"{one['peak_to_peak_N']:.0f}", f"{one['peak_to_peak_predicted_N']:.0f}",
+            ]
+            for run, channels in cuts.items()
+            for channel, one in channels.items()
+        ],
+    )  # fmt: skip
 
 
 def _print_waveforms(summary: dict[str, Any]) -> None:
@@ -90,6 +117,8 @@ def _print_waveforms(summary: dict[str, Any]) -> None:
     )
     for name, one in summary["resonances"].items():
         print_line(f"{name} has a resonance at {one['frequency_Hz']:.0f} Hz")
+    if summary["low_pass_Hz"] is not None:
+        print_line(f"all channels pass a low-pass of {summary['low_pass_Hz']:.0f} Hz")
     for cut in summary["cuts"]:
         left = ", ".join(f"{name} {share:.0%}" for name, share in cut["left"].items())
         print_line(f"{cut['run']}: the waveforms leave {left} of the varying force")

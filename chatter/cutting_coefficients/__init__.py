@@ -11,7 +11,11 @@ revolution_average whole waveforms averaged over the revolution, the speed that 
 waveform_model     waveforms by a rigid tool with runout, as a dynamometer shows them
 waveform_fit       least squares of the waveforms of all cuts together
 waveform_choice    runout, law, offsets and resonances kept by evidence
-waveforms          fits of waveforms compared, cuts held out, what is written of them
+waveforms          fits of waveforms compared, what is written of them
+feed_series        cuts that differ by the feed alone, and what lies between their feeds
+prediction         means and waveforms of a cut that was not fitted
+predicted_cuts     each cut by the others, and those that are kept apart
+own_table          a row of the user's own table of materials
 coefficient_units  units as they are written
 result             what is written and drawn
 ================== ========================================================================

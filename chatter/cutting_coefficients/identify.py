@@ -22,7 +22,9 @@ _ENOUGH_CUTS = 3
 
 
 def coefficients(
-    records: str | Path | Measurement, case: str | Path | Case | None = None
+    records: str | Path | Measurement,
+    case: str | Path | Case | None = None,
+    hold_out: Sequence[str] = (),
 ) -> Coefficients:
     """Cutting coefficients from the mean forces of a series of cuts.
 
@@ -39,6 +41,8 @@ def coefficients(
         feed, depth or width; forces with known directions, their senses may be unknown.
     case : path or Case, optional
         In place of the case that measurement.toml names.
+    hold_out : sequence of str
+        Files of runs that are not fitted, and predicted by the others (`with_waveforms`).
 
     Returns
     -------
@@ -52,6 +56,7 @@ def coefficients(
     if not isinstance(records, Measurement):
         records = read_measurement(records, case)
     records.case.require("tool", "cut")
+    records, apart = _parted(records, hold_out)
     means = mean_forces(records)
     cases = {run.name: run.of(records.case) for run in records.runs}
     fits = _fitted(LAWS, means, cases)
@@ -64,7 +69,28 @@ def coefficients(
     kept = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
     own = min(_fitted(BY_DIRECTION, means, cases), key=lambda one: one.chi_square, default=None)
     beside = None if own is None else _holdout(own, means, cases)
-    return Coefficients(records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside)
+    return Coefficients(
+        records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside, apart
+    )
+
+
+def _parted(
+    records: Measurement, hold_out: Sequence[str]
+) -> tuple[Measurement, Measurement | None]:
+    """Runs that are fitted, and those that are not."""
+    names = [run.name for run in records.runs]
+    for name in hold_out:
+        if name not in names:
+            raise InputError(
+                f"{records.folder}: {name} is held out, and is no run; there are {', '.join(names)}"
+            )
+    if not hold_out:
+        return records, None
+    fitted = [run for run in records.runs if run.name not in hold_out]
+    if not fitted:
+        raise InputError(f"{records.folder}: all runs are held out; none is left to fit")
+    apart = [run for run in records.runs if run.name in hold_out]
+    return records.with_runs(fitted), records.with_runs(apart)
 
 
 def _fitted(

@@ -14,7 +14,10 @@ from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
 from chatter.cutting_coefficients.own_table import add_row
+from chatter.cutting_coefficients.predicted_cuts import each_by_the_others, of_measurement
+from chatter.cutting_coefficients.prediction import PredictedCut
 from chatter.cutting_coefficients.waveforms import Waveforms, waveforms
+from chatter.description.case import Case
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -46,8 +49,12 @@ class Coefficients:
         Law of which every direction has its own form; no law of a case file may be so.
     holdout_by_direction : dict of str to float, or None
         Error by that law of each cut, fitted to the others.
+    kept_apart : Measurement, optional
+        Cuts that were not fitted.
     waveforms : Waveforms, optional
         What the whole waveforms say; see `with_waveforms`.
+    predicted_cuts : tuple of PredictedCut
+        Cuts that were not fitted, with their forces by the others.
     """
 
     measurement: Measurement
@@ -57,7 +64,9 @@ class Coefficients:
     holdout: dict[str, float] | None
     by_direction: FittedLaw | None
     holdout_by_direction: dict[str, float] | None
+    kept_apart: Measurement | None = None
     waveforms: Waveforms | None = None
+    predicted_cuts: tuple[PredictedCut, ...] = ()
 
     def with_waveforms(self) -> Coefficients:
         """Return the same with the whole waveforms fitted beside the mean forces.
@@ -67,7 +76,34 @@ class Coefficients:
         InputError
             If the waveforms cannot be used.
         """
-        return replace(self, waveforms=waveforms(self.measurement))
+        found = waveforms(self.measurement)
+        given = (self.law_of_means, self.means, self._cases, found.kept)
+        apart = self.kept_apart
+        return replace(
+            self,
+            waveforms=replace(found, holdout=each_by_the_others(*given)),
+            predicted_cuts=() if apart is None else of_measurement(apart, *given),
+        )
+
+    @property
+    def _cases(self) -> dict[str, Case]:
+        return {run.name: run.of(self.measurement.case) for run in self.measurement.runs}
+
+    @property
+    def law_of_means(self) -> FittedLaw:
+        """Law by which mean forces are predicted: of forms of their own where no line holds."""
+        if self._line_fits_means is False and self.by_direction is not None:
+            return self.by_direction
+        return self.kept
+
+    @property
+    def by_waveforms(self) -> bool:
+        """Whether the coefficients are those of the waveforms.
+
+        They tell offsets and runout from the law, but need a tool that does not vibrate.
+        """
+        found = self.waveforms
+        return found is not None and found.tool_is_rigid and found.has_material
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -76,11 +112,23 @@ class Coefficients:
     @property
     def material(self) -> dict[str, object]:
         """Section [material] in SI."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.material
         return self.kept.law.section(self.kept.values, self.kept.exponents)
 
     @property
     def linear_law_holds(self) -> bool | None:
-        """Whether the linear law leaves no more than the readings scatter; None if not fitted."""
+        """Whether the linear law holds, by what the coefficients are from; None if not fitted.
+
+        By waveforms: no other law is better by strong evidence. By mean forces: it leaves no more
+        than the readings scatter.
+        """
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.linear_law_holds
+        return self._line_fits_means
+
+    @property
+    def _line_fits_means(self) -> bool | None:
         linear = next((one for one in self.fits if one.law.name == "linear"), None)
         freedom = len(self.means) - 6
         if linear is None or freedom < 1:
@@ -89,10 +137,18 @@ class Coefficients:
 
     def summary(self) -> dict[str, Any]:
         """Content of coefficients.json."""
-        return {
+        answer: dict[str, Any] = {
+            "from": "mean forces",
             "law": self.kept.law.name,
             "coefficients": self._coefficients(self.kept),
             "exponents": self._exponents(self.kept),
+        }
+        by_mean_forces = {key: answer[key] for key in ("law", "coefficients", "exponents")}
+        if self.waveforms is not None and self.by_waveforms:
+            answer = {"from": "waveforms", **self.waveforms.answer()}
+        return {
+            **answer,
+            "by_mean_forces": by_mean_forces,
             "by_direction": self._by_direction(),
             "signs": self.kept.signs,
             "linear_law_holds": self.linear_law_holds,
@@ -110,21 +166,26 @@ class Coefficients:
                 for one, predicted in zip(self.means, self.kept.predicted, strict=True)
             ],
             "waveforms": None if self.waveforms is None else self.waveforms.summary(),
+            "not_fitted": {one.average.run: one.errors() for one in self.predicted_cuts},
             "notes": self.notes,
         }
 
     @property
     def notes(self) -> list[str]:
         """What the reader should know."""
-        notes = [
-            "mean forces hold an offset of the dynamometer: zero it in the air, or the edge "
-            "coefficients take it up"
-        ]
+        notes = []
+        if not self.by_waveforms:
+            notes.append(
+                "mean forces hold an offset of the dynamometer: zero it in the air, or the edge "
+                "coefficients take it up"
+            )
         if self.kept.signs:
             notes.append(
                 "unknown senses of channels are those that make the coefficients positive and the "
                 "radial one smaller than the tangential one"
             )
+        if self.by_waveforms:
+            return [*notes, *self._notes_of_waveforms()]
         if self.linear_law_holds is False:
             worst = min(self.straightness().items(), key=lambda item: item[1], default=None)
             text = "the linear law leaves more than the readings scatter"
@@ -136,6 +197,23 @@ class Coefficients:
             notes.append("a cutting coefficient is below zero: a direction or a sense may be wrong")
         if self.holdout is None:
             notes.append("too few cuts to judge the law by one held out")
+        return notes
+
+    def _notes_of_waveforms(self) -> list[str]:
+        if self.linear_law_holds:
+            return []
+        found = self.waveforms
+        assert found is not None
+        notes = [
+            f"the linear law does not hold: the waveforms are better explained by "
+            f"{found.kept.model.law.name}, by strong evidence"
+        ]
+        if found.kept is not found.of_case:
+            notes.append(
+                f"[material] has the {found.of_case.model.law.name} law, the best that a case file "
+                "can have; by_direction and waveforms in coefficients.json have the forms of each "
+                "direction"
+            )
         return notes
 
     def _bent_directions(self) -> list[str]:
@@ -219,6 +297,8 @@ class Coefficients:
 
     def material_toml(self) -> str:
         """[material] section of a case file."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.material_toml()
         section = tomlkit.table()
         for key, value in self._row().items():
             section.add(key, value)
@@ -232,6 +312,8 @@ class Coefficients:
 
     def _row(self) -> dict[str, Any]:
         """Keys and values of [material], in usual units."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.row()
         row: dict[str, Any] = {"law": self.kept.law.law}
         for one in self._coefficients(self.kept):
             row[one["name"]] = (
@@ -252,7 +334,8 @@ class Coefficients:
         """
         case = self.measurement.case
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
-        source = f"mean forces of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
+        kind = "waveforms" if self.by_waveforms else "mean forces"
+        source = f"{kind} of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
         validity = f"feeds of {1e3 * min(feeds):.4g} to {1e3 * max(feeds):.4g} mm a tooth"
         return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage
-from chatter.cutting_coefficients.waveform_fit import Problem, WaveformFit, fitted
+from chatter.cutting_coefficients.waveform_fit import Problem, WaveformFit, fitted, residual_weights
 from chatter.cutting_coefficients.waveform_model import WaveformModel
 from chatter.description.arrays import Array
 
@@ -24,6 +24,8 @@ _FIRST_EXPONENT, _FIRST_HELIX = 0.7, math.radians(30.0)
 _FIRST_DAMPING = 0.1
 #: its frequencies that are tried
 _FREQUENCIES = 24
+#: directions whose powers are fitted together
+_SEVERAL = 2
 #: the linear law with edge forces, of which the search starts
 _LINEAR = next(law for law in LAWS if law.name == "linear")
 
@@ -48,21 +50,48 @@ def waveform_fits(
     """
     rigid = _first_fit(averages, unsigned)
     found = [_with_runout(rigid), *([] if not helix else [_with_helix(_with_runout(rigid))])]
-    best = _best([rigid, *found])
-    best = _best([best, *_with_resonances(best)])
+    best = _with_dynamics(_best([rigid, *found]))
     if not best.model.runout:
         # a resonance may have hidden it
         best = _best([best, _with_runout(best)])
-    best = _best([best, *_without_offsets(best)])
-    laws = [law for law in (*LAWS, *BY_DIRECTION[3:4], *BY_DIRECTION[7:]) if law is not _LINEAR]
-    fits = [best, *(_with_law(best, law) for law in laws)]
+    # from here on what a harmonic is left to be wrong by says how much it counts
+    best = _weighted(best)
+    best = _best([best, _without_offsets(best)])
+    fits = [best, *(_with_law(best, law) for law in LAWS if law is not _LINEAR)]
+    fits += _by_direction(best)
     effective = _effective(fits)
     return sorted(fits, key=lambda one: one.criterion(effective))
 
 
-def _effective(fits: Sequence[WaveformFit]) -> float:
+def _by_direction(linear: WaveformFit) -> list[WaveformFit]:
+    """Fits with a power in one direction, and in all those where one is better than a line."""
+    single = [_with_law(linear, law) for law in BY_DIRECTION if law.exponent_count == 1]
+    better = [one for one in single if _best([linear, one]) is one]
+    bent = {number for one in better for number in range(3) if one.model.law.exponents[number] >= 0}
+    if len(bent) < _SEVERAL:
+        return single
+    together = next(
+        law
+        for law in BY_DIRECTION
+        if bent == {number for number in range(3) if law.exponents[number] >= 0}
+    )
+    return [*single, _with_law(linear, together)]
+
+
+def _with_dynamics(fit: WaveformFit) -> WaveformFit:
+    """Resonances and a low-pass of the dynamometer; one may hide the other at first."""
+    best = _with_resonances(fit)
+    best = _best([best, _with_low_pass(best)])
+    return _with_resonances(best)
+
+
+def _weighted(fit: WaveformFit) -> WaveformFit:
+    return fitted(fit.model, fit.averages, fit.parameters, residual_weights(fit))
+
+
+def _effective(fits: Sequence[WaveformFit]) -> Array:
     """Independent readings that all are compared by: those of what the best one leaves."""
-    return min(fits, key=lambda one: one.power).effective
+    return min(fits, key=lambda one: float(np.sum(np.log(one.power)))).effective
 
 
 def _best(fits: Sequence[WaveformFit]) -> WaveformFit:
@@ -75,27 +104,8 @@ def refitted(fit: WaveformFit, averages: Sequence[RevolutionAverage]) -> Wavefor
     parts = fit.model.split(fit.parameters, len(fit.averages))
     names = [one.run for one in fit.averages]
     start = [parts["start"][names.index(one.run)] for one in averages]
-    return fitted(fit.model, averages, np.concatenate([start, fit.parameters[len(fit.averages) :]]))
-
-
-def aligned(fit: WaveformFit, average: RevolutionAverage) -> tuple[float, Array]:
-    """Start angle of another cut by a fit, and its Fourier coefficients (channels, k) there.
-
-    Offsets of a cut that was not fitted are not known: the forces are those of the tool alone.
-    """
-    parts = fit.model.split(fit.parameters, len(fit.averages))
-    forces = fit.model.forces(average, parts)
-
-    def of(start: float) -> Array:
-        return fit.model.seen(average, parts, forces, start) @ fit.coefficients
-
-    def left(start: float) -> float:
-        return float(np.sum(np.abs((of(start) - average.amplitude)[:, 1:]) ** 2))
-
-    starts = np.linspace(0.0, 2.0 * math.pi, _STARTS * fit.model.teeth, endpoint=False)
-    best = min(starts, key=left)
-    fine = min(best + np.linspace(-1.0, 1.0, 41) * starts[1], key=left)
-    return float(fine), of(float(fine))
+    first = np.concatenate([start, fit.parameters[len(fit.averages) :]])
+    return fitted(fit.model, averages, first, fit.weights)
 
 
 def _first_fit(averages: Sequence[RevolutionAverage], unsigned: Sequence[str]) -> WaveformFit:
@@ -150,17 +160,17 @@ def _with_runout(fit: WaveformFit) -> WaveformFit:
     averages = fit.averages
     rest = fit.parameters[len(averages) :]
     tries = [
-        fitted(model, averages[:1], np.concatenate([fit.parameters[:1], runout, rest]))
+        fitted(model, averages[:1], np.concatenate([fit.parameters[:1], runout, rest]), fit.weights)
         for runout in _runouts(model)
     ]
-    first = min(tries, key=lambda one: one.power)
+    first = min(tries, key=lambda one: float(one.power.sum()))
     pitch = 2.0 * math.pi / model.teeth
     starts = [first.parameters[0]]
     for number, one in enumerate(averages[1:], start=1):
-        problem = Problem(model, [one])
+        problem = Problem(model, [one], fit.weights)
         turned = [fit.parameters[number] + pitch * tooth for tooth in range(model.teeth)]
         starts.append(min(turned, key=lambda start: _power(problem, start, first.parameters[1:])))
-    return fitted(model, averages, np.concatenate([starts, first.parameters[1:]]))
+    return fitted(model, averages, np.concatenate([starts, first.parameters[1:]]), fit.weights)
 
 
 def _power(problem: Problem, start: float, rest: Array) -> float:
@@ -186,24 +196,42 @@ def _with_law(fit: WaveformFit, law: TriedLaw) -> WaveformFit:
     return _again(fit, replace(fit.model, law=law), {"exponent": exponents})
 
 
-def _without_offsets(fit: WaveformFit) -> list[WaveformFit]:
-    return [_again(fit, replace(fit.model, offsets=False), {})]
+def _without_offsets(fit: WaveformFit) -> WaveformFit:
+    return _again(fit, replace(fit.model, offsets=False), {})
 
 
-def _with_resonances(fit: WaveformFit) -> list[WaveformFit]:
+def _with_resonances(fit: WaveformFit) -> WaveformFit:
     """Resonances added one channel after another, each from where it leaves least."""
-    found, best = [], fit
+    best = fit
     for name in fit.averages[0].channels:
+        if name in best.model.resonant:
+            continue
         model = replace(best.model, resonant=(*best.model.resonant, name))
-        problem = Problem(model, best.averages)
+        problem = Problem(model, best.averages, best.weights)
         tries = [_resonance(best, frequency) for frequency in _frequencies(best)]
         scored = [
             (float(np.sum(problem.solved(_joined(best, one))[1] ** 2)), number)
             for number, one in enumerate(tries)
         ]
         best = _best([best, _again(best, model, tries[min(scored)[1]])])
-        found.append(best)
-    return found
+    return best
+
+
+def _with_low_pass(fit: WaveformFit) -> WaveformFit:
+    """One low-pass before all channels, from where it leaves least; its delay turns the starts."""
+    model = replace(fit.model, low_pass=True)
+    problem = Problem(model, fit.averages, fit.weights)
+    starts = fit.parameters[: len(fit.averages)]
+    speeds = np.array([one.speed for one in fit.averages])
+    tries = [
+        {
+            "start": starts + math.sqrt(2.0) * speeds / (2.0 * math.pi * cut_off),
+            "low_pass": np.array([math.log(cut_off)]),
+        }
+        for cut_off in _frequencies(fit)
+    ]
+    best = min(tries, key=lambda one: float(np.sum(problem.solved(_joined(fit, one))[1] ** 2)))
+    return _again(fit, model, best)
 
 
 def _resonance(fit: WaveformFit, frequency: float) -> dict[str, Array]:
@@ -220,7 +248,7 @@ def _frequencies(fit: WaveformFit) -> Array:
 
 def _again(fit: WaveformFit, model: WaveformModel, new: dict[str, Array]) -> WaveformFit:
     """Fit a changed model from where the fit is."""
-    return fitted(model, fit.averages, _joined(fit, new))
+    return fitted(model, fit.averages, _joined(fit, new), fit.weights)
 
 
 def _joined(fit: WaveformFit, new: dict[str, Array]) -> Array:

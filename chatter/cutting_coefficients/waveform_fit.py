@@ -21,7 +21,11 @@ _SMOOTH = 5
 #: bounds: runout (10 um), exponent, helix (rad), ln of damping
 _RUNOUT, _EXPONENT, _HELIX = 20.0, (0.05, 1.0), math.radians(60.0)
 _DAMPING = (math.log(0.005), math.log(1.0))
+#: of ln of the cut-off of a low-pass, from where it was found
+_LOW_PASS = 0.7
 _MOST_EVALUATIONS = 40
+#: residual of a harmonic, over the largest of its channel, below which its weight grows no more
+_LEAST_RESIDUAL = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +38,10 @@ class WaveformFit:
     values: Array  # (n,) coefficients (SI), then offsets of every cut and channel, N
     residual: tuple[Complex, ...]  # (channels, k) of each cut, N
     covariance: Array  # (p + n, p + n)
-    power: float  # mean square of the residual summed over channels and cuts, N^2
-    effective: float  # independent readings, by the autocorrelation of the residual
+    weights: Array  # (channels, k) of the readings, 1/N
+    power: Array  # (channels,) mean square of the weighted residual, summed over cuts
+    #: (channels,) independent readings, by the autocorrelation of the weighted residual
+    effective: Array
 
     @property
     def coefficients(self) -> Array:
@@ -57,27 +63,44 @@ class WaveformFit:
     def _deviations(self) -> Array:
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
-    def criterion(self, effective: float) -> float:
-        """Bayesian criterion for a number of independent readings; less is better."""
+    @property
+    def rms_left(self) -> float:
+        """Root of the mean square of the residual, summed over channels and cuts, N."""
+        squares = [np.abs(one[:, :1]) ** 2 for one in self.residual]
+        squares += [2.0 * np.abs(one[:, 1:]) ** 2 for one in self.residual]
+        return math.sqrt(sum(float(one.sum()) for one in squares))
+
+    def criterion(self, effective: Array) -> float:
+        """Bayesian criterion for independent readings of each channel; less is better.
+
+        Every channel has a noise of its own size.
+        """
         count = self.parameters.size + self.values.size
-        return effective * math.log(max(self.power, 1e-12)) + count * math.log(effective)
+        fit = float(effective @ np.log(np.maximum(self.power, 1e-24)))
+        return fit + count * math.log(float(effective.sum()))
 
 
 class Problem:
     """Averages of cuts and a model for them, with what is the same between evaluations kept."""
 
-    def __init__(self, model: WaveformModel, averages: Sequence[RevolutionAverage]) -> None:
+    def __init__(
+        self,
+        model: WaveformModel,
+        averages: Sequence[RevolutionAverage],
+        weights: Array | None = None,
+    ) -> None:
         self.model, self.averages = model, tuple(averages)
-        self.measured = np.concatenate([stacked(one.amplitude[..., None]) for one in averages])[
-            :, 0
-        ]
+        self.weights = channel_weights(averages) if weights is None else weights
+        weighted = [self._weighted(one.amplitude[..., None]) for one in averages]
+        self.measured = np.concatenate([stacked(one) for one in weighted])[:, 0]
         self._kept: dict[tuple[int, bytes], Complex] = {}
 
     def rows(self, parameters: Array) -> Array:
         """Readings (m, n) for each linear parameter of 1."""
         parts = self.model.split(parameters, len(self.averages))
         blocks = [
-            stacked(self._columns(number, one, parts)) for number, one in enumerate(self.averages)
+            stacked(self._weighted(self._columns(number, one, parts)))
+            for number, one in enumerate(self.averages)
         ]
         coefficients = np.concatenate(blocks)
         if not self.model.offsets:
@@ -86,7 +109,7 @@ class Problem:
         return np.hstack([coefficients, scipy.linalg.block_diag(*offsets)])
 
     def solved(self, parameters: Array) -> tuple[Array, Array]:
-        """Linear parameters, and what they leave."""
+        """Linear parameters, and what they leave, weighted."""
         rows = self.rows(parameters)
         scale = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
         values = np.linalg.lstsq(rows / scale, self.measured, rcond=1e-9)[0] / scale
@@ -104,7 +127,10 @@ class Problem:
     def _offset_rows(self, one: RevolutionAverage) -> Array:
         unit = np.zeros((*one.amplitude.shape, len(one.channels)), dtype=np.complex128)
         unit[:, 0, :] = np.eye(len(one.channels))
-        return stacked(unit)
+        return stacked(self._weighted(unit))
+
+    def _weighted(self, amplitude: Complex) -> Complex:
+        return amplitude * self.weights[:, : amplitude.shape[1], None]
 
     def bounds(self, first: Array) -> tuple[Array, Array]:
         """Bounds of the parameters."""
@@ -116,6 +142,8 @@ class Problem:
         frequency, damping = parts["resonance"][::2], parts["resonance"][1::2]
         low[frequency], high[frequency] = first[frequency] - 0.4, first[frequency] + 0.4
         low[damping], high[damping] = _DAMPING
+        cut_off = parts["low_pass"]
+        low[cut_off], high[cut_off] = first[cut_off] - _LOW_PASS, first[cut_off] + _LOW_PASS
         return low, high
 
 
@@ -139,11 +167,35 @@ def unstacked(values: Array, averages: Sequence[RevolutionAverage]) -> tuple[Com
     return tuple(found)
 
 
+def channel_weights(averages: Sequence[RevolutionAverage]) -> Array:
+    """Weights (channels, k) that make the varying force of every channel as large."""
+    most = max(one.amplitude.shape[1] for one in averages)
+    squares = sum(np.sum(np.abs(one.amplitude[:, 1:]) ** 2, axis=1) for one in averages)
+    size = np.sqrt(np.maximum(squares, 1e-24))
+    return np.tile(1.0 / size[:, None], (1, most))
+
+
+def residual_weights(fit: WaveformFit) -> Array:
+    """Weights (channels, k) by what a fit leaves at each harmonic: a model is wrong at some."""
+    most = max(one.shape[1] for one in fit.residual)
+    power = np.zeros((fit.residual[0].shape[0], most))
+    count = np.zeros(most)
+    for one in fit.residual:
+        power[:, : one.shape[1]] += np.abs(one) ** 2
+        count[: one.shape[1]] += 1.0
+    smooth = scipy.ndimage.uniform_filter1d(power / count, _SMOOTH, axis=1, mode="nearest")
+    least = _LEAST_RESIDUAL**2 * smooth.max(axis=1, keepdims=True)
+    return 1.0 / np.sqrt(np.maximum(smooth, np.maximum(least, 1e-24)))
+
+
 def fitted(
-    model: WaveformModel, averages: Sequence[RevolutionAverage], first: NDArray[np.float64]
+    model: WaveformModel,
+    averages: Sequence[RevolutionAverage],
+    first: NDArray[np.float64],
+    weights: Array | None = None,
 ) -> WaveformFit:
     """Fit a model from first parameters; the linear ones are solved at every step."""
-    problem = Problem(model, averages)
+    problem = Problem(model, averages, weights)
     low, high = problem.bounds(first)
     margin = 1e-6
     found = scipy.optimize.least_squares(
@@ -155,15 +207,24 @@ def fitted(
 
 def _with_covariance(problem: Problem, parameters: Array) -> WaveformFit:
     values, left = problem.solved(parameters)
-    residual = unstacked(left, problem.averages)
+    weighted = unstacked(left, problem.averages)
     jacobian = np.hstack([_slopes(problem, parameters, values), problem.rows(parameters)])
-    covariance = _sandwich(jacobian, residual, left.size)
-    powers = np.concatenate([(np.abs(one) ** 2).ravel() for one in residual])
-    effective = 4.0 * powers.sum() ** 2 / max(float(np.sum(powers**2)), 1e-300)
+    covariance = _sandwich(jacobian, weighted, left.size)
+    residual = tuple(one / problem.weights[:, : one.shape[1]] for one in weighted)
+    power, effective = _powers(weighted)
     return WaveformFit(
         problem.model, problem.averages, parameters, values, residual, covariance,
-        float(left @ left), min(effective, float(left.size)),
+        problem.weights, power, effective,
     )  # fmt: skip
+
+
+def _powers(weighted: Sequence[Complex]) -> tuple[Array, Array]:
+    """Mean square of every channel, and how many independent readings it has."""
+    squares = np.concatenate([np.abs(one) ** 2 for one in weighted], axis=1)
+    total, fourth = squares.sum(axis=1), np.sum(squares**2, axis=1)
+    # a complex coefficient is two readings; of Gaussian ones the mean of |c|^4 is twice |c|^2 ^2
+    effective = 4.0 * total**2 / np.maximum(fourth, 1e-300)
+    return total, np.minimum(effective, 2.0 * squares.shape[1])
 
 
 def _slopes(problem: Problem, parameters: Array, values: Array) -> Array:
@@ -189,7 +250,7 @@ def _sandwich(jacobian: Array, residual: Sequence[Complex], count: int) -> Array
     power = np.concatenate(
         [np.concatenate([one[:, :1], one[:, 1:], one[:, 1:]], axis=1).ravel() for one in spectrum]
     )
-    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    scale = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-100)
     inverse = np.linalg.pinv(jacobian / scale, rcond=1e-9)
     freedom = max(count - jacobian.shape[1], 1)
     return (inverse * power) @ inverse.T * (count / freedom) / np.outer(scale, scale)

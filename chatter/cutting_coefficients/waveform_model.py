@@ -41,6 +41,8 @@ class WaveformModel:
         Whether the helix is fitted, one for all teeth.
     resonant : tuple of str
         Channels with a resonance of the dynamometer.
+    low_pass : bool
+        Butterworth filter of second order before all channels.
     signs : dict of str to float
         Of channels whose sense is not known.
     """
@@ -52,6 +54,7 @@ class WaveformModel:
     offsets: bool = True
     helix: bool = False
     resonant: tuple[str, ...] = ()
+    low_pass: bool = False
 
     @property
     def runout_count(self) -> int:
@@ -66,6 +69,7 @@ class WaveformModel:
             "exponent": self.law.exponent_count,
             "helix": int(self.helix),
             "resonance": 2 * len(self.resonant),
+            "low_pass": int(self.low_pass),
         }
         edges = np.cumsum([0, *sizes.values()])
         return {
@@ -81,6 +85,7 @@ class WaveformModel:
         found += ["helix"] * self.helix
         for name in self.resonant:
             found += [f"resonance of {name}", f"damping of {name}"]
+        found += ["low-pass"] * self.low_pass
         return found
 
     def cutter(self, one: RevolutionAverage, parts: Mapping[str, Array]) -> Cutter:
@@ -124,4 +129,8 @@ class WaveformModel:
                 frequency, damping = np.exp(parts["resonance"][place : place + 2])
                 ratio = one.speed * one.harmonic / (2.0 * math.pi * frequency)
                 found[row] /= (1.0 - ratio**2 + 2j * damping * ratio)[:, None]
+        if self.low_pass:
+            cut_off = float(np.exp(parts["low_pass"][0]))
+            ratio = one.speed * one.harmonic / (2.0 * math.pi * cut_off)
+            found /= (1.0 - ratio**2 + 1j * math.sqrt(2.0) * ratio)[:, None]
         return found

@@ -13,33 +13,17 @@ import tomlkit
 from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.laws import REFERENCE_CHIP
 from chatter.cutting_coefficients.mean_forces import force_channels
+from chatter.cutting_coefficients.prediction import PredictedCut, compared
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage, revolution_average
-from chatter.cutting_coefficients.waveform_choice import aligned, refitted, waveform_fits
+from chatter.cutting_coefficients.waveform_choice import waveform_fits
 from chatter.cutting_coefficients.waveform_fit import WaveformFit
 from chatter.cutting_coefficients.waveform_model import RUNOUT_UNIT, Complex
-from chatter.description.arrays import Array
 from chatter.explain.measurement import Measurement
 
-#: points over a revolution of a waveform that is compared or drawn
-_POINTS = 360
-#: cuts of which each can be left out in turn
-_ENOUGH_CUTS = 3
 #: share of the varying force above which a rigid tool is no model of the cut
 _VIBRATES = 0.2
 #: difference of the Bayesian criterion that is strong evidence (Kass and Raftery 1995)
 _STRONG = 10.0
-
-
-@dataclass(frozen=True, eq=False)
-class CutHoldout:
-    """A cut, and its waveforms by the law fitted to the others."""
-
-    average: RevolutionAverage
-    predicted: Complex  # (channels, k), N
-
-    def errors(self) -> dict[str, Any]:
-        """Means and peak-to-peak by channel: measured and predicted, N."""
-        return _compared(self.average, self.predicted)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +34,12 @@ class Waveforms:
     ----------
     fits : tuple of WaveformFit
         Of all laws, the best first.
-    holdout : tuple of CutHoldout
-        Each cut by the fit of the best law to the others; empty of fewer than three.
+    holdout : tuple of PredictedCut
+        Each cut by the others; empty of fewer than three.
     """
 
     fits: tuple[WaveformFit, ...]
-    holdout: tuple[CutHoldout, ...]
+    holdout: tuple[PredictedCut, ...] = ()
 
     @property
     def kept(self) -> WaveformFit:
@@ -82,22 +66,54 @@ class Waveforms:
         )
 
     @property
-    def notes(self) -> list[str]:
-        """What the reader should know."""
+    def material(self) -> dict[str, object]:
+        """Section [material] in SI."""
+        fit = self.of_case
+        exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
+        return fit.model.law.section(fit.coefficients, exponent)
+
+    def answer(self) -> dict[str, Any]:
+        """Law of a case file with its coefficients and exponents, as the mean forces give them."""
+        fit = self.of_case
+        names = fit.model.names(fit.averages)
+        return {
+            "law": fit.model.law.name,
+            "coefficients": _coefficients(fit),
+            "exponents": [
+                {
+                    "of": ["tangential", "radial", "axial"],
+                    "value": one["value"],
+                    "standard_deviation": one["standard_deviation"],
+                }
+                for one in _of_kind(fit, names, "exponent", 1.0, "")
+            ],
+        }
+
+    @property
+    def most_left(self) -> float:
+        """Largest share of the varying force of a channel that the fit leaves."""
         kept = self.kept
-        left = max(
+        return max(
             share
             for average, residual in zip(kept.averages, kept.residual, strict=True)
             for share in _left(average, residual)
         )
+
+    @property
+    def tool_is_rigid(self) -> bool:
+        """Whether a rigid tool and the dynamometer explain the varying force."""
+        return self.most_left <= _VIBRATES
+
+    @property
+    def notes(self) -> list[str]:
+        """What the reader should know."""
         notes = []
-        if left > _VIBRATES:
+        if not self.tool_is_rigid:
             notes.append(
-                f"a rigid tool leaves up to {left:.0%} of the varying force: tool or dynamometer "
-                "vibrates, the deviations are too small, and the mean forces are the safer ones"
+                f"a rigid tool leaves up to {self.most_left:.0%} of the varying force: tool or "
+                "workpiece vibrates, the deviations are too small, and the mean forces are the "
+                "safer ones"
             )
-        if not self.linear_law_holds:
-            notes.append("the linear law does not hold: another law is better by strong evidence")
         if not self.has_material:
             notes.append(
                 "no [material] section is written from the waveforms: a cutting coefficient of the "
@@ -117,16 +133,17 @@ class Waveforms:
             "helix": _of_kind(kept, names, "helix", math.degrees(1.0), "deg"),
             "start_angles": _of_kind(kept, names, "start", math.degrees(1.0), "deg"),
             "resonances": _resonances(kept),
+            "low_pass_Hz": _low_pass(kept),
             "offsets": _offsets(kept),
             "signs": dict(kept.model.signs),
-            "linear_law_holds": self.linear_law_holds,
+            "tool_is_rigid": self.tool_is_rigid,
             "notes": self.notes,
-            "independent_readings": kept.effective,
+            "independent_readings": float(kept.effective.sum()),
             "laws": [
                 {
                     "law": one.model.law.name,
                     "criterion": float(one.criterion(kept.effective)),
-                    "rms_left_N": math.sqrt(one.power),
+                    "rms_left_N": one.rms_left,
                 }
                 for one in self.fits
             ],
@@ -136,26 +153,32 @@ class Waveforms:
                     "spindle_speed_rpm": 30.0 * one.speed / math.pi,
                     "repeated": dict(zip(one.channels, map(float, one.repeated), strict=True)),
                     "left": dict(zip(one.channels, _left(one, left), strict=True)),
-                    "channels": _compared(one, one.amplitude + left),
+                    "channels": compared(one, one.amplitude + left),
                 }
                 for one, left in zip(kept.averages, kept.residual, strict=True)
             ],
             "holdout": {one.average.run: one.errors() for one in self.holdout},
         }
 
+    def row(self) -> dict[str, Any]:
+        """Keys and values of [material], by the best law that a case file may have."""
+        fit = self.of_case
+        row: dict[str, Any] = {"law": fit.model.law.law}
+        for one in _coefficients(fit):
+            row[one["name"]] = (
+                f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+            )
+        exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
+        if exponent.size:
+            row |= {"exponent": round(float(exponent[0]), 5), "h0": f"{1e3 * REFERENCE_CHIP:g} mm"}
+        return row
+
     def material_toml(self) -> str:
         """[material] section of a case file by the best law that a case file may have."""
         fit = self.of_case
         section = tomlkit.table()
-        section.add("law", fit.model.law.law)
-        for one in _coefficients(fit):
-            section.add(
-                one["name"], f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
-            )
-        exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
-        if exponent.size:
-            section.add("exponent", round(float(exponent[0]), 5))
-            section.add("h0", f"{1e3 * REFERENCE_CHIP:g} mm")
+        for key, value in self.row().items():
+            section.add(key, value)
         document = tomlkit.document()
         document.add(
             tomlkit.comment(f"{fit.model.law.name} law, waveforms of {len(fit.averages)} cuts")
@@ -171,8 +194,8 @@ def waveforms(measurement: Measurement) -> Waveforms:
 
     The forces are averaged over the revolution at the speed that each record shows. Start angles,
     runout, offsets of channels and one resonance of the dynamometer for each channel are fitted
-    with the law, and the helix where the case does not give it; what does not lower the Bayesian
-    criterion is left out.
+    with the law, a low-pass before all channels, and the helix where the case does not give it;
+    what does not lower the Bayesian criterion is left out.
 
     Raises
     ------
@@ -183,38 +206,7 @@ def waveforms(measurement: Measurement) -> Waveforms:
     known = force_channels(measurement, measurement.runs[0])
     unsigned = [name for name, (_, has_sign) in known.items() if not has_sign]
     has_free_helix = "helix" not in measurement.case.tool.model_fields_set
-    fits = waveform_fits(averages, unsigned, has_free_helix)
-    return Waveforms(tuple(fits), tuple(_of_holdout(fits[0], averages)))
-
-
-def waveform(amplitude: Complex) -> Array:
-    """Forces (channels, points) over the revolution from Fourier coefficients, N."""
-    harmonic = np.arange(amplitude.shape[1])
-    turn = np.exp(2j * math.pi * np.outer(harmonic, np.arange(_POINTS) / _POINTS))
-    return ((amplitude * np.where(harmonic == 0, 1.0, 2.0)) @ turn).real
-
-
-def _of_holdout(fit: WaveformFit, averages: Sequence[RevolutionAverage]) -> list[CutHoldout]:
-    if len(averages) < _ENOUGH_CUTS:
-        return []
-    found = []
-    for one in averages:
-        again = refitted(fit, [other for other in averages if other is not one])
-        found.append(CutHoldout(one, aligned(again, one)[1]))
-    return found
-
-
-def _compared(average: RevolutionAverage, predicted: Complex) -> dict[str, Any]:
-    measured, expected = waveform(average.amplitude), waveform(predicted)
-    return {
-        name: {
-            "mean_N": float(measured[row].mean()),
-            "mean_predicted_N": float(expected[row].mean()),
-            "peak_to_peak_N": float(np.ptp(measured[row])),
-            "peak_to_peak_predicted_N": float(np.ptp(expected[row])),
-        }
-        for row, name in enumerate(average.channels)
-    }
+    return Waveforms(tuple(waveform_fits(averages, unsigned, has_free_helix)))
 
 
 def _left(average: RevolutionAverage, residual: Complex) -> list[float]:
@@ -261,6 +253,11 @@ def _resonances(fit: WaveformFit) -> dict[str, dict[str, float]]:
         name: {"frequency_Hz": float(frequency), "damping_ratio": float(damping)}
         for name, (frequency, damping) in zip(fit.model.resonant, pairs, strict=True)
     }
+
+
+def _low_pass(fit: WaveformFit) -> float | None:
+    given = fit.model.split(fit.parameters, len(fit.averages))["low_pass"]
+    return float(np.exp(given[0])) if given.size else None
 
 
 def _offsets(fit: WaveformFit) -> dict[str, dict[str, float]]:

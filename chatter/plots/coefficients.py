@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from chatter.cutting_coefficients.feed_series import differ_by_feed_alone
 from chatter.cutting_coefficients.mean_forces import channels_of
 from chatter.plots import style
 
@@ -38,7 +39,7 @@ def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
         feeds, [one.value for one in own], yerr=[2.0 * one.deviation for one in own], fmt="o",
         color=style.BLUE, capsize=3.0, label="measured, +- 2 standard deviations",
     )  # fmt: skip
-    if _differ_by_feed_alone(list(cases.values())):
+    if differ_by_feed_alone(list(cases.values())):
         line = np.linspace(0.5 * feeds.min(), 1.1 * feeds.max(), _POINTS)
         any_case = next(iter(cases.values()))
         for fit, colour, label in _shown(found):
@@ -66,14 +67,3 @@ def _shown(found: Coefficients):
     if found.by_direction is not None and found.by_direction.exponents.size:
         shown.append((found.by_direction, style.GREEN, "each direction by a form of its own"))
     return shown
-
-
-def _differ_by_feed_alone(cases: list) -> bool:
-    first = cases[0].cut
-    return all(
-        one.cut.model_copy(
-            update={"feed_per_tooth": first.feed_per_tooth, "feed_rate": first.feed_rate}
-        )
-        == first
-        for one in cases
-    )

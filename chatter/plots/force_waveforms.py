@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from chatter.cutting_coefficients.waveforms import Waveforms, waveform
+from chatter.cutting_coefficients.prediction import waveform
+from chatter.cutting_coefficients.waveforms import Waveforms
 from chatter.plots import style
 
 #: cuts that are drawn: the others are told in coefficients.json

@@ -151,9 +151,12 @@ def test_the_command(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     folder = records(tmp_path, **UP_CUT)
     shown = chatter_command("coefficients", folder, "--out", tmp_path / "out")
-    assert "linear law, 4 cuts" in shown.stdout
-    given = json.loads(chatter_command("coefficients", folder, "--json").stdout)
+    assert "linear law, waveforms of 4 cuts" in shown.stdout
+    alone = chatter_command("coefficients", folder, "--mean-forces", "--json")
+    given = json.loads(alone.stdout)
     assert given["law"] == "linear"
+    assert given["from"] == "mean forces"
+    assert given["waveforms"] is None
 
 
 @pytest.mark.parametrize(
@@ -181,8 +184,9 @@ def test_a_row_of_the_own_table_is_used_by_name(tmp_path):
     table = tmp_path / "ours.toml"
     table.write_text('# ours\n[older]\nKtc = "700 MPa"\nKrc = "200 MPa"\nsource = "a book"\n')
     shown = chatter_command(
-        "coefficients", folder, "--table", table, "--name", "our steel", "--out", tmp_path / "out"
-    )
+        "coefficients", folder, "--table", table, "--name", "our steel", "--mean-forces",
+        "--out", tmp_path / "out",
+    )  # fmt: skip
     assert shown.exit_code == 0, shown
     assert table.read_text().startswith("# ours\n[older]")
     case = load(folder / "case.toml").patch(

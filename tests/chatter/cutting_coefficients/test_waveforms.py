@@ -103,7 +103,8 @@ def records(
 
 
 def fitted(folder):
-    return chatter.coefficients(folder).with_waveforms().summary()["waveforms"]
+    summary = chatter.coefficients(folder).with_waveforms().summary()
+    return {**summary["waveforms"], "linear_law_holds": summary["linear_law_holds"]}
 
 
 def numbers(part):
@@ -178,6 +179,37 @@ def test_a_resonance_of_the_dynamometer_is_told_from_the_law(tmp_path):
     values = numbers(found["coefficients"])
     for name in ("Ktc", "Krc", "Kac"):
         assert values[name][0] == pytest.approx(TRUE[name], rel=0.04), name
+
+
+def test_intervals_hold_the_truth_behind_three_resonances_and_a_low_pass(tmp_path):
+    folder = records(tmp_path)
+    random = np.random.default_rng(4)
+    fine = np.arange(0.0, 0.4, 5e-5)
+    resonances = ((760.0, 0.04), (915.0, 0.03), (1180.0, 0.05))
+    low_pass = scipy.signal.butter(2, 2.0 * math.pi * 1800.0, analog=True)
+    for feed, start, offset in zip(FEEDS, STARTS, OFFSETS, strict=True):
+        seen = [
+            scipy.signal.lsim(low_pass, behind_resonance(one, fine[1], *resonance), fine)[1]
+            for one, resonance in zip(forces(fine, feed, start).T, resonances, strict=True)
+        ]
+        time, values = fine[::4], np.column_stack(seen)[::4] + np.array(offset)
+        values += np.outer(time / time[-1] - 0.5, [20.0, -10.0, 5.0])
+        values += 5.0 * random.standard_normal(values.shape)
+        np.savetxt(
+            folder / f"feed_{1e3 * feed:g}.csv", np.c_[time, values], delimiter=",", comments="",
+            header="time [s],Fx [N],Fy [N],Fz [N]",
+        )  # fmt: skip
+    summary = chatter.coefficients(folder).with_waveforms().summary()
+    assert summary["from"] == "waveforms"
+    assert summary["linear_law_holds"] is True
+    assert summary["waveforms"]["low_pass_Hz"] == pytest.approx(1800.0, rel=0.2)
+    for axis, (frequency, _) in zip("xyz", resonances, strict=True):
+        found = summary["waveforms"]["resonances"][f"F{axis}"]["frequency_Hz"]
+        assert found == pytest.approx(frequency, rel=0.02)
+    for name, (value, deviation) in numbers(summary["coefficients"]).items():
+        # three standard deviations, and 1 % for the discs of the sum
+        assert abs(value - TRUE[name]) < 3.0 * deviation + 0.01 * TRUE[name], name
+        assert deviation < 0.1 * TRUE[name], name
 
 
 def test_the_command_writes_law_and_picture(tmp_path):
