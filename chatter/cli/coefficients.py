@@ -2,65 +2,93 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from chatter.cli import options
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
+from chatter.description.units import QuantityError, parse
 from chatter.report.console import print_line, print_notes, print_table, print_written
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
 
 
-def coefficients(
+@dataclass(frozen=True)
+class CoefficientOptions:
+    """What `chatter coefficients` is given."""
+
     records: Annotated[
-        Path, typer.Argument(metavar="RECORDS", help="Measurement folder of kind milling.")
-    ],
+        Path,
+        typer.Argument(
+            metavar="RECORDS", help="Measurement folder of kind milling, or one file of forces."
+        ),
+    ]
     case: Annotated[
         Path | None, typer.Option("--case", help="In place of the case of measurement.toml.")
-    ] = None,
+    ] = None
+    columns: options.Columns = None
     table: Annotated[
         Path | None,
         typer.Option("--table", help="Own table of materials to add the coefficients to."),
-    ] = None,
+    ] = None
     name: Annotated[
         str | None, typer.Option("--name", help="Name of the new row of that table.")
-    ] = None,
+    ] = None
     waveforms: Annotated[
         bool,
         typer.Option(
             "--waveforms/--mean-forces",
             help="Fit the whole waveforms too, with runout; or the mean forces alone.",
         ),
-    ] = True,
+    ] = True
     hold_out: Annotated[
         list[str] | None,
         typer.Option(
             "--hold-out", metavar="FILE", help="Run that is predicted, not fitted; repeatable."
         ),
-    ] = None,
-    out: options.OutputFolder = None,
-    json: options.Json = False,
-) -> None:
+    ] = None
+    rake: Annotated[
+        str | None,
+        typer.Option(
+            "--rake", metavar="ANGLE", help='Normal rake, "8 deg": the oblique law is fitted too.'
+        ),
+    ] = None
+    out: options.OutputFolder = None
+    json: options.Json = False
+
+
+@takes_options
+def coefficients(given: CoefficientOptions) -> None:
     """Find the cutting coefficients of a series of cuts by their mean forces and waveforms."""
     from chatter.cutting_coefficients.identify import coefficients as identify
 
-    if (table is None) != (name is None):
+    if (given.table is None) != (given.name is None):
         raise InputError("--table and --name belong together: a row of a table, and its name")
     with progress_bar("mean forces and laws"):
-        found = identify(records, case, hold_out or ())
-    if waveforms:
+        found = identify(given.records, given.case, given.hold_out or (), given.columns)
+    if given.waveforms:
         with progress_bar("waveforms and runout"):
             found = found.with_waveforms()
-    folder = options.output_folder(out, records.resolve().name)
-    present(found, folder, json=json, words=_print_coefficients)
-    if table is not None:
-        print_written([found.keep_in(table, name)])
+    if given.rake is not None:
+        found = found.with_rake(_angle(given.rake))
+    folder = options.output_folder(given.out, given.records.resolve().stem)
+    present(found, folder, json=given.json, words=_print_coefficients)
+    if given.table is not None and given.name is not None:
+        print_written([found.keep_in(given.table, given.name)])
+
+
+def _angle(given: str) -> float:
+    try:
+        return parse(given, "angle").value
+    except QuantityError as error:
+        raise InputError(f"--rake: {error}") from error
 
 
 def _print_coefficients(found: Coefficients) -> None:
@@ -82,10 +110,25 @@ def _print_coefficients(found: Coefficients) -> None:
         print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     if found.waveforms is not None:
         _print_waveforms(summary["waveforms"])
+    if summary["oblique"] is not None:
+        _print_oblique(summary["oblique"])
     if summary["not_fitted"]:
         _print_predicted(summary["not_fitted"])
     for note in summary["notes"]:
         print_notes([note])
+
+
+def _print_oblique(one: dict[str, Any]) -> None:
+    print_table(
+        "oblique law, rake as given and shear angle by Merchant",
+        ["number", "value", "+-", "unit"],
+        [
+            [key["name"], f"{key['value']:.4g}", f"{key['standard_deviation']:.2g}", key["unit"]]
+            for key in one["values"]
+        ],
+    )
+    if not one["holds"]:
+        print_line("the oblique law does not hold: the axial force is not that of this helix")
 
 
 def _print_predicted(cuts: dict[str, Any]) -> None:

@@ -9,13 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
+from chatter.cutting_coefficients.in_the_cut import in_the_cut
 from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
 from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
+from chatter.cutting_coefficients.records_of_cuts import read_records
 from chatter.cutting_coefficients.result import Coefficients
+from chatter.cutting_coefficients.varied_cut import with_parts
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement
-from chatter.explain.measurement_file import read_measurement
 
 #: cuts of which each can be left out in turn
 _ENOUGH_CUTS = 3
@@ -25,6 +27,7 @@ def coefficients(
     records: str | Path | Measurement,
     case: str | Path | Case | None = None,
     hold_out: Sequence[str] = (),
+    columns: str | None = None,
 ) -> Coefficients:
     """Cutting coefficients from the mean forces of a series of cuts.
 
@@ -38,11 +41,15 @@ def coefficients(
     ----------
     records : path or Measurement
         Measurement folder of kind "milling": a case with tool and cut, and runs that differ by
-        feed, depth or width; forces with known directions, their senses may be unknown.
+        feed, depth or width; forces with known directions, their senses may be unknown. Or one
+        file of forces, whose columns feed_per_tooth, feed_rate, axial_depth and radial_depth tell
+        how the cut was varied.
     case : path or Case, optional
-        In place of the case that measurement.toml names.
+        In place of the case that measurement.toml names, or of a file without one.
     hold_out : sequence of str
         Files of runs that are not fitted, and predicted by the others (`with_waveforms`).
+    columns : str, optional
+        Headings of a file without, such as "time [s], Fx [N], Fy [N]".
 
     Returns
     -------
@@ -54,9 +61,11 @@ def coefficients(
         If the records cannot be used, or determine no law.
     """
     if not isinstance(records, Measurement):
-        records = read_measurement(records, case)
+        records = read_records(records, case, columns)
     records.case.require("tool", "cut")
-    records, apart = _parted(records, hold_out)
+    given = [in_the_cut(records, run) for run in with_parts(records).runs]
+    zeroed = all(one.is_zeroed for one in given)
+    records, apart = _parted(records.with_runs([one.run for one in given]), hold_out)
     means = mean_forces(records)
     cases = {run.name: run.of(records.case) for run in records.runs}
     fits = _fitted(LAWS, means, cases)
@@ -70,7 +79,7 @@ def coefficients(
     own = min(_fitted(BY_DIRECTION, means, cases), key=lambda one: one.chi_square, default=None)
     beside = None if own is None else _holdout(own, means, cases)
     return Coefficients(
-        records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside, apart
+        records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside, apart, zeroed
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,14 +11,18 @@ import numpy as np
 import scipy
 import tomlkit
 
+from chatter.compile.cutter import cutter_of
 from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
+from chatter.cutting_coefficients.oblique_fit import ObliqueFit, oblique_fit
 from chatter.cutting_coefficients.own_table import add_row
 from chatter.cutting_coefficients.predicted_cuts import each_by_the_others, of_measurement
 from chatter.cutting_coefficients.prediction import PredictedCut
 from chatter.cutting_coefficients.waveforms import Waveforms, waveforms
+from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -25,6 +30,8 @@ from chatter.io.result_files import as_json, finite_or_none, short_repr, write_r
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+#: normal rake that a milling cutter has less than, rad
+_MOST_RAKE = 0.25 * math.pi
 _DIRECTIONS = ("tangential", "radial", "axial")
 #: probability that a law that holds leaves more
 _HOLDS = 0.01
@@ -51,10 +58,14 @@ class Coefficients:
         Error by that law of each cut, fitted to the others.
     kept_apart : Measurement, optional
         Cuts that were not fitted.
+    zeroed : bool
+        Whether the air before or after every cut showed the offsets, and they are taken off.
     waveforms : Waveforms, optional
         What the whole waveforms say; see `with_waveforms`.
     predicted_cuts : tuple of PredictedCut
         Cuts that were not fitted, with their forces by the others.
+    oblique : ObliqueFit, optional
+        Oblique law; see `with_rake`.
     """
 
     measurement: Measurement
@@ -65,8 +76,10 @@ class Coefficients:
     by_direction: FittedLaw | None
     holdout_by_direction: dict[str, float] | None
     kept_apart: Measurement | None = None
+    zeroed: bool = False
     waveforms: Waveforms | None = None
     predicted_cuts: tuple[PredictedCut, ...] = ()
+    oblique: ObliqueFit | None = None
 
     def with_waveforms(self) -> Coefficients:
         """Return the same with the whole waveforms fitted beside the mean forces.
@@ -84,6 +97,35 @@ class Coefficients:
             waveforms=replace(found, holdout=each_by_the_others(*given)),
             predicted_cuts=() if apart is None else of_measurement(apart, *given),
         )
+
+    def with_rake(self, rake: float) -> Coefficients:
+        """Return the same with the oblique law fitted for a normal rake, rad.
+
+        Raises
+        ------
+        InputError
+            If no linear law with edge forces was fitted, or the rake is no rake.
+        """
+        where = self.measurement.folder
+        if not abs(rake) < _MOST_RAKE:
+            raise InputError(
+                f"{where}: a normal rake of {math.degrees(rake):g} deg; it lies between -45 and 45"
+            )
+        linear = self._linear_fit()
+        if linear is None or linear[0][0] <= 0.0:
+            raise InputError(
+                f"{where}: the oblique law follows from the linear one, which the records do not "
+                "determine; forces along x, y and z of two feeds do"
+            )
+        helix = cutter_of(self.measurement.case).helix[0]
+        return replace(self, oblique=oblique_fit(*linear, rake, helix))
+
+    def _linear_fit(self) -> tuple[Array, Array] | None:
+        """Coefficients (6,) of the linear law and their covariance, by what the answer is from."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.linear_fit()
+        linear = next((one for one in self.fits if one.law.name == "linear"), None)
+        return None if linear is None else (linear.values, linear.covariance)
 
     @property
     def _cases(self) -> dict[str, Case]:
@@ -115,6 +157,11 @@ class Coefficients:
         if self.waveforms is not None and self.by_waveforms:
             return self.waveforms.material
         return self.kept.law.section(self.kept.values, self.kept.exponents)
+
+    @property
+    def has_material(self) -> bool:
+        """Whether the law cuts: the tangential coefficient is above zero."""
+        return self.by_waveforms or float(self.kept.values[0]) > 0.0
 
     @property
     def linear_law_holds(self) -> bool | None:
@@ -166,6 +213,7 @@ class Coefficients:
                 for one, predicted in zip(self.means, self.kept.predicted, strict=True)
             ],
             "waveforms": None if self.waveforms is None else self.waveforms.summary(),
+            "oblique": None if self.oblique is None else self.oblique.summary(),
             "not_fitted": {one.average.run: one.errors() for one in self.predicted_cuts},
             "notes": self.notes,
         }
@@ -174,7 +222,9 @@ class Coefficients:
     def notes(self) -> list[str]:
         """What the reader should know."""
         notes = []
-        if not self.by_waveforms:
+        if self.zeroed:
+            notes.append("offsets are those of the air before or after each cut, and taken off")
+        elif not self.by_waveforms:
             notes.append(
                 "mean forces hold an offset of the dynamometer: zero it in the air, or the edge "
                 "coefficients take it up"
@@ -194,7 +244,13 @@ class Coefficients:
             notes.append(text)
             notes += self._bent_directions()
         if any(value < 0.0 for value in self.kept.values[:3]):
-            notes.append("a cutting coefficient is below zero: a direction or a sense may be wrong")
+            notes.append(
+                "a cutting coefficient is below zero: a direction or a sense may be wrong; "
+                "measurement.toml tells both by [channels.NAME] with on, direction and "
+                'sign = "unknown"'
+            )
+        if not self.has_material:
+            notes.append("no [material] section is written: the tangential force does not cut")
         if self.holdout is None:
             notes.append("too few cuts to judge the law by one held out")
         return notes
@@ -330,8 +386,14 @@ class Coefficients:
         Raises
         ------
         InputError
-            If there is a row of that name, or the file is no table of materials.
+            If there is a row of that name, the file is no table of materials, or the law does not
+            cut.
         """
+        if not self.has_material:
+            raise InputError(
+                f"{self.measurement.folder}: no row is kept: the tangential coefficient is below "
+                "zero; a direction or a sense may be wrong"
+            )
         case = self.measurement.case
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
         kind = "waveforms" if self.by_waveforms else "mean forces"
@@ -345,10 +407,11 @@ class Coefficients:
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write coefficients.json, material.toml and coefficients.png; of waveforms theirs too."""
-        texts = {
-            "coefficients.json": as_json(self.summary()),
-            "material.toml": self.material_toml(),
-        }
+        texts = {"coefficients.json": as_json(self.summary())}
+        if self.has_material:
+            texts["material.toml"] = self.material_toml()
+        if self.oblique is not None:
+            texts["material-oblique.toml"] = self.oblique.material_toml()
         pictures = {"coefficients.png": self.plot()}
         if self.waveforms is not None:
             if self.waveforms.has_material:

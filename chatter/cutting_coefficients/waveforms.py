@@ -18,6 +18,7 @@ from chatter.cutting_coefficients.revolution_average import RevolutionAverage, r
 from chatter.cutting_coefficients.waveform_choice import waveform_fits
 from chatter.cutting_coefficients.waveform_fit import WaveformFit
 from chatter.cutting_coefficients.waveform_model import RUNOUT_UNIT, Complex
+from chatter.description.arrays import Array
 from chatter.explain.measurement import Measurement
 
 #: share of the varying force above which a rigid tool is no model of the cut
@@ -71,6 +72,13 @@ class Waveforms:
         fit = self.of_case
         exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
         return fit.model.law.section(fit.coefficients, exponent)
+
+    def linear_fit(self) -> tuple[Array, Array]:
+        """Coefficients (6,) of the linear law with edge forces, and their covariance, SI."""
+        fit = next(one for one in self.fits if one.model.law.name == "linear")
+        first = fit.parameters.size
+        own = slice(first, first + fit.coefficients.size)
+        return fit.coefficients, fit.covariance[own, own]
 
     def answer(self) -> dict[str, Any]:
         """Law of a case file with its coefficients and exponents, as the mean forces give them."""

@@ -18,10 +18,10 @@ from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.limits import limits_of
 from chatter.explain.records.description import RecordDescription, record_of
-from chatter.io.signals import read_signals
+from chatter.io.signals import Signals, read_signals
 
 #: keys of [[run]] that are no override of the case
-OWN_KEYS = ("file", "condition", "direction", "excite", "read", "title")
+OWN_KEYS = ("file", "from", "to", "condition", "direction", "excite", "read", "title")
 KEYS = (
     "title",
     "kind",
@@ -39,6 +39,8 @@ KEYS = (
 _ONE_KIND_KEYS = tuple(key for key in KEYS if key != "part")
 PART_KEYS = ("title", "kind", "points", "run", "idle_power", "record", "channels")
 SET_UP_KEYS = ("title", "kind", "case", "part", "tolerance", "next_measurement")
+#: samples that a part of a record has at the least
+_LEAST_SAMPLES = 2
 #: sections of a case that a short key of a run may mean
 SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -83,7 +85,7 @@ def _only_run(path: Path, case: str | Path | Case | None) -> Measurement:
             f'file = "{path.name}"'
         )
     whole = read_measurement(beside, case)
-    runs = tuple(run for run in whole.runs if Path(run.name).name == path.name)
+    runs = tuple(run for run in whole.runs if run.name.partition(", ")[0] == path.name)
     if whole.kind == SetUp.name or not runs:
         names = ", ".join(run.name for run in whole.runs)
         raise InputError(f"{beside}: {path.name} is the file of no run; there are {names}")
@@ -257,7 +259,36 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     direction = _direction(where, entry)
     condition = str(entry.get("condition", ""))
     signals = read_signals(file, kind, direction)
-    return Run(file.name, overrides, signals, cut_time, condition, direction)
+    name = file.name
+    if "from" in entry or "to" in entry:
+        name, signals = _window(where, name, entry, signals)
+    return Run(name, overrides, signals, cut_time, condition, direction)
+
+
+def _window(
+    where: str, name: str, entry: Mapping[str, Any], signals: Signals
+) -> tuple[str, Signals]:
+    """Part of a record, by the times since its first sample, and its name."""
+    time = signals.get("time")
+    if time is None:
+        raise InputError(f"{where}: from and to are of records over time, and there is no time")
+    since = time - time[0]
+    begin, end = 0.0, float(since[-1])
+    try:
+        if "from" in entry:
+            begin = parse(entry["from"], "time").value
+        if "to" in entry:
+            end = parse(entry["to"], "time").value
+    except QuantityError as error:
+        raise InputError(f"{where}: from, to: {error}") from error
+    chosen = (since >= begin) & (since <= end)
+    if chosen.sum() < _LEAST_SAMPLES:
+        raise InputError(
+            f"{where}: from {begin:g} s to {end:g} s holds {chosen.sum()} samples of a record of "
+            f"{since[-1]:.4g} s"
+        )
+    part = {key: values[chosen] for key, values in signals.items()}
+    return f"{name}, {begin:g} s to {end:g} s", part
 
 
 def _direction(where: str, entry: Mapping[str, Any]) -> str:

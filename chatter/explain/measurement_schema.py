@@ -14,6 +14,8 @@ _VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 #: own keys of a run -> what they are
 _OWN: dict[str, dict[str, Any]] = {
     "file": {"examples": ["run01.csv"], "description": "signals of the run"},
+    "from": {"examples": ["1.5 s"], "description": "part of the record: since its first sample"},
+    "to": {"examples": ["4 s"], "description": "end of that part"},
     "condition": {"examples": ["idle"], "description": "of FRFs: idle, in the cut, ..."},
     "direction": {"examples": ["x"], "description": "of an FRF at the tool point"},
     "excite": {

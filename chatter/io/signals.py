@@ -10,6 +10,7 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.io.formats.format_list import format_of
 from chatter.io.headings import named
+from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import Column, Table
 from dynamics.frf.container import Frf, MeasurementError
 
@@ -30,8 +31,10 @@ _NAMES_OF_CONTENT = {
 }
 
 
-def read_signals(path: Path, kind: str = "", direction: str = "") -> Signals:
-    """Columns of a file in SI, by name.
+def read_signals(
+    path: Path, kind: str = "", direction: str = "", columns: str | None = None
+) -> Signals:
+    """Columns of a file in SI, by name; `columns` states the headings of a file without.
 
     The kind of measurement tells what a displacement or a force of a universal file is called
     there; the direction is that of the FRF wanted of a file of several, response first. InputError
@@ -40,7 +43,7 @@ def read_signals(path: Path, kind: str = "", direction: str = "") -> Signals:
     try:
         if kind == "frf":
             return _frf(path, direction)
-        return _in_si(format_of(path, "signals").read_signals(path), kind)
+        return _in_si(read_signal_table(path, columns), kind)
     except MeasurementError as error:
         raise InputError(str(error)) from error
 

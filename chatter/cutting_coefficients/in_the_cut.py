@@ -1,0 +1,65 @@
+"""What of a record is in the cut, and the offsets that the air before and after it shows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.cutting_coefficients.mean_forces import force_channels
+from chatter.description.arrays import Array
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.description import AIR
+from chatter.explain.records.stages import stages_of
+
+#: revolutions of air that show an offset, at the least, and those beside the cut that do not count
+_LEAST_AIR, _MARGIN = 2, 2
+
+
+class RunInCut(NamedTuple):
+    """Run in its settled cut, and whether its offsets were taken off."""
+
+    run: Run
+    is_zeroed: bool
+
+
+def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
+    """Return the settled cut of a run that begins or ends in the air; else the run as it is.
+
+    The offset is the mean force in the air; where there is air on both sides it drifts on a line.
+    """
+    names = list(force_channels(measurement, run))
+    time = run.signals.get("time")
+    if time is None or not names or time.size < 2:
+        return RunInCut(run, is_zeroed=False)
+    case = run.of(measurement.case)
+    forces = np.array([run.signals[name] for name in names])
+    stages = stages_of(case, time, forces, AIR)
+    if stages.entry == 0 and stages.leave == time.size:
+        return RunInCut(run, is_zeroed=False)
+    turn = 2.0 * math.pi / case.cut.spindle_speed / run.step
+    air = [
+        part
+        for part in (slice(0, stages.entry - round(_MARGIN * turn)),
+                     slice(stages.leave + round(_MARGIN * turn), time.size))
+        if part.stop - part.start >= _LEAST_AIR * turn
+    ]  # fmt: skip
+    signals = {name: values[stages.settled] for name, values in run.signals.items()}
+    for name in names:
+        signals[name] = signals[name] - _offset(run.signals[name], air, turn, time, signals["time"])
+    return RunInCut(replace(run, signals=signals), is_zeroed=bool(air))
+
+
+def _offset(values: Array, air: list[slice], turn: float, time: Array, wanted: Array) -> Array:
+    """Offset at the times wanted, by whole revolutions of air."""
+    if not air:
+        return np.zeros(wanted.size)
+    at, level = [], []
+    for part in air:
+        size = round(math.floor((part.stop - part.start) / turn) * turn)
+        chosen = slice(part.start, part.start + size)
+        at.append(float(time[chosen].mean()))
+        level.append(float(values[chosen].mean()))
+    return np.interp(wanted, at, level)
