@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from chatter.app.sliders import Slider, case_sliders, checked_values, diagram_sliders
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -47,6 +48,7 @@ class LiveCase:
             raise InputError(
                 f'method "{self.method}" cannot follow a slider; with --live, give another --method'
             )
+        refuse_inclined_axis(case)
         self.case = case
         model = milling_model(case)
         speeds = spindle_speeds(case)

@@ -1,16 +1,50 @@
-"""An inclined tool axis is refused, with what can be said of the cut without its engagement."""
+"""An inclined tool axis (lead, tilt): its engagement, and what is not computed with it."""
 
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from cutting.engagement.inclined_tool import InclinedEngagement, ToolAxis
+from cutting.tool.cutter import Cutter
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: engagements that an inclined tool is computed with
+_SIDES = ("up", "down", "slot")
+#: an edge that stands steeper runs along the tool axis
+_UPRIGHT = 0.5 * math.pi - 1e-9
+#: places on the edge, and around the axis, at which the largest diameter is searched
+_HEIGHTS, _ANGLES = 400, 721
 
 
-def angle_to_surface_normal(case: Case) -> float:
-    """Angle of the tool axis from the normal of the surface, rad: cos = cos(lead) cos(tilt)."""
-    return math.acos(math.cos(case.cut.lead) * math.cos(case.cut.tilt))
+def is_inclined(case: Case) -> bool:
+    """Whether the tool axis is another than the normal of the surface."""
+    return case.cut is not None and (case.cut.lead != 0.0 or case.cut.tilt != 0.0)
+
+
+def tool_axis(case: Case) -> ToolAxis:
+    """Inclination of the tool axis."""
+    return ToolAxis(case.cut.lead, case.cut.tilt)
+
+
+def inclined_engagement(
+    case: Case, cutter: Cutter, axial_depth: float | None = None
+) -> InclinedEngagement:
+    """Engagement of an inclined tool, by default at the axial depth (m) of [cut]."""
+    cut = case.cut
+    depth = cut.axial_depth if axial_depth is None else axial_depth
+    width = cut.radial_depth
+    return InclinedEngagement(
+        cutter, tool_axis(case), depth, cut.mode, cut.stepover,
+        None if width is None else min(width, cutter.diameter),
+    )  # fmt: skip
 
 
 def effective_diameter_of_ball(diameter: float, axial_depth: float, axis_angle: float) -> float:
@@ -24,25 +58,118 @@ def effective_diameter_of_ball(diameter: float, axial_depth: float, axis_angle: 
     return diameter * math.sin(min(reached, 0.5 * math.pi))
 
 
+def effective_diameter(engagement: InclinedEngagement) -> float:
+    """Largest diameter, m, of what of the tool lies ahead and below the uncut surface.
+
+    The widest edge that cuts in a slot; of a ball that leans towards the feed
+    `effective_diameter_of_ball`.
+    """
+    cutter, top = engagement.cutter, engagement.top
+    height = np.linspace(0.0, top, _HEIGHTS + 1)[1:]
+    reached = np.array([cutter.radius_at(one) for one in height])
+    corner = cutter.corner_radius
+    sine = np.clip(1.0 - height / corner, 0.0, 1.0) if corner > 0.0 else np.zeros_like(height)
+    immersion = np.arccos(sine)
+    wide = _widest(engagement, height, reached, immersion)
+    return 2.0 * wide
+
+
+def _widest(
+    engagement: InclinedEngagement,
+    height: NDArray[np.float64],
+    radius: NDArray[np.float64],
+    immersion: NDArray[np.float64],
+) -> float:
+    """Largest radius, m, at which a point lies in the cut; refined between two heights."""
+    cutter = engagement.cutter
+    angle = np.linspace(-0.5 * math.pi, 1.5 * math.pi, _ANGLES)
+
+    def cuts(at: float, wide: float, kappa: float) -> bool:
+        _, z = engagement.places(np.full(_ANGLES, at), np.full(_ANGLES, wide), angle)
+        ahead = engagement.ahead(np.full(_ANGLES, kappa), angle) >= -1e-12
+        return bool(np.any(ahead & (engagement.below_surface(z) >= 0.0)))
+
+    inside = [k for k in range(height.size) if cuts(height[k], radius[k], immersion[k])]
+    if not inside:
+        return 0.0
+    last = inside[-1]
+    if last == height.size - 1 or radius[last] >= cutter.radius * (1.0 - 1e-12):
+        return float(radius[last])
+    low, high = float(height[last]), float(height[last + 1])
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        kappa = 0.5 * math.pi
+        if middle < cutter.corner_radius:
+            kappa = math.acos(1.0 - middle / cutter.corner_radius)
+        inside_there = cuts(middle, cutter.radius_at(middle), kappa)
+        low, high = (middle, high) if inside_there else (low, middle)
+    return float(cutter.radius_at(low))
+
+
 def refuse_inclined_axis(case: Case) -> None:
-    """InputError where the tool axis is inclined; it names the effective diameter of a ball."""
-    cut, tool = case.cut, case.tool
-    angle = angle_to_surface_normal(case)
-    if angle == 0.0:
+    """InputError where the tool axis is inclined, for what does not take it."""
+    _ = case.uncut_band
+
+
+def _key(case: Case) -> str:
+    return "lead" if case.cut.lead else "tilt"
+
+
+def check_inclined_axis(case: Case) -> None:
+    """InputError where the tool axis is inclined and the case holds what is not computed then."""
+    if not is_inclined(case):
         return
-    key = "lead" if cut.lead else "tilt"
-    words = (
-        f"{case.name}: cut.{key}: an inclined tool axis is not computed: it changes which part of "
-        "the edge is engaged, at which angles"
-    )
-    if tool.kind == "ball":
-        wide = effective_diameter_of_ball(tool.diameter, cut.axial_depth, angle)
-        speed = 30.0 * wide * cut.spindle_speed
-        words += (
-            f". Inclined by {math.degrees(angle):.4g} deg the ball cuts up to an effective "
-            f"diameter of {1e3 * wide:.4g} mm, at {speed:.4g} m/min there; leave lead and tilt out "
-            "for the limits and forces of an axis normal to the surface, with the tip in the cut"
+    problems = _of_tool(case) + _of_cut(case) + _of_laws(case)
+    if problems:
+        where = f"{case.name}: cut.{_key(case)}: with an inclined tool axis "
+        raise InputError([where + problem for problem in problems])
+
+
+def _of_tool(case: Case) -> list[str]:
+    tool, found = case.tool, []
+    cutter = cutter_of(case)
+    if cutter.edge_angle < _UPRIGHT:
+        found.append(
+            'the edge must run along the axis above its corner (kind = "ball", "bull nose" or '
+            f'"end mill"); that of kind = "{tool.kind}" stands at '
+            f"{math.degrees(cutter.edge_angle):.4g} deg"
         )
-    else:
-        words += "; leave lead and tilt out for an axis normal to the surface"
-    raise InputError(words)
+    if tool.serration is not None:
+        found.append("a serrated edge (tool.serration) is not computed")
+    flat = cutter.radius - cutter.corner_radius > 1e-9 * cutter.radius
+    if flat and case.cut.lead < 0.0:
+        found.append(
+            "the lead of a tool with a flat end must not be below 0 deg, not "
+            f"{math.degrees(case.cut.lead):.4g} deg: the end behind its tip would cut, which has "
+            "no edges in the model"
+        )
+    return found
+
+
+def _of_cut(case: Case) -> list[str]:
+    found = []
+    if case.cut.mode not in _SIDES:
+        found.append(
+            'the engagement is stated by mode = "slot", or "up" or "down" with stepover or '
+            f'radial_depth, not by mode = "{case.cut.mode}"'
+        )
+    simulation = case.simulation
+    carved = simulation is not None and simulation.chip != "delay"
+    if case.stock is not None or carved:
+        found.append('the chip is that of simulation.chip = "delay", without [stock]')
+    if simulation is not None and simulation.has_own_path:
+        found.append("the tool moves straight on: no simulation.path or program")
+    return found
+
+
+def _of_laws(case: Case) -> list[str]:
+    found = []
+    if case.contact is not None:
+        found.append("[contact] is not computed: its share of the depth is that of an upright tool")
+    damping = case.process_damping
+    if damping is not None and damping.indentation_force is not None:
+        found.append(
+            "ploughing (process_damping.indentation_force) is not computed; "
+            "process_damping.coefficient is"
+        )
+    return found

@@ -151,13 +151,21 @@ class Case(Description):
 
     @property
     def uncut_band(self) -> UncutBand:
-        """Uncut work across the feed, as [cut] states it."""
+        """Uncut work across the feed, as [cut] states it; InputError with an inclined tool axis."""
+        for key in ("lead", "tilt"):
+            angle = getattr(self.cut, key)
+            if angle:
+                raise InputError(
+                    f"{self.name}: cut.{key}: {math.degrees(angle):.4g} deg is not computed here, "
+                    "which takes a tool axis normal to the surface alone; check, lobes, whatif and "
+                    "simulate take an inclined one"
+                )
         return uncut_band(self.cut, self.tool)
 
     @property
     def width_of_cut(self) -> float:
         """Width of cut at the full radius of the tool, m, seen along the feed."""
-        return float(self.uncut_band.width(0.5 * self.tool.diameter))
+        return float(uncut_band(self.cut, self.tool).width(0.5 * self.tool.diameter))
 
     @property
     def feed_speed(self) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut, delayed_commit, delayed_forces
 from cutting.chip.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
+from cutting.chip.inclined_chip import InclinedCut, inclined_commit, inclined_forces
 from cutting.chip.tool_point import Rotation, ToolPoint, TurningRotation, tool_point
 from cutting.compiled import INLINED, by_table, for_each
 from cutting.force.force_factor import ForceFactor, factor_commit, factor_forces
@@ -23,6 +24,7 @@ from cutting.process_damping.contact import ToolContact, contact_commit, contact
 #: table -> kernels of its forces and its commit, called with rotation and tool point
 LAWS_AT_TOOL = {
     DelayedCut: (delayed_forces, delayed_commit),
+    InclinedCut: (inclined_forces, inclined_commit),
     DiscreteCut: (discrete_forces, discrete_commit),
     ForceFactor: (factor_forces, factor_commit),
     ToolContact: (contact_forces, contact_commit),

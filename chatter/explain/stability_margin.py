@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.cutter import force_law, helix_angles, process_damping_of
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.compile.structure import depends_on_speed, structure_of
 from chatter.description.case import Case
 from chatter.explain.tests_side_by_side import (
@@ -276,6 +277,7 @@ def _ploughs(case: Case) -> bool:
 
 def _model_of(case: Case) -> MillingModel:
     """Model of a case; checks and averages are those of a case with the same tool and modes."""
+    refuse_inclined_axis(case)
     directions = tuple(mode.direction for mode in case.structure.mode)
     if not directions or _ploughs(case):
         return milling_model(case)

@@ -9,6 +9,7 @@ setup             a case compiled: laws at the tool point on a structure
 structure_in_time modes or machine behind the ports, with its step
 machine_in_time   the machine among them, its axes at the feed as the cut begins
 resolution        steps, slices and length of a run, chosen where the case is silent
+inclined_slices   slices of a tool whose axis is inclined, each with one of its arcs
 spindle           rotation of the spindle and path of the tool over the steps
 workpiece         workpiece of dexels or voxels
 start_in_stock    stock that the tool stands in at the start is cleared

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.inclined_axis import inclined_engagement, is_inclined
 from cutting.engagement.immersion import slice_engagement
 from cutting.engagement.uncut_band import UncutBand
 from cutting.surface.envelope import (
@@ -42,6 +43,7 @@ _MOST_LOOKS = 6_000_000
 #: margin at both ends of the motion for edges on their way past the wall, rad
 _MARGIN = 0.65
 _ROUNDING = 1e-9
+_WALL_OF_INCLINED = "wall: not evaluated with an inclined tool axis; the floor is"
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +81,9 @@ def surface_profiles(
     record = _record(result)
     if record is None:
         return [], None, ["surface: the run is too short for it to be evaluated"]
+    if is_inclined(case):
+        floor, reason = _floor_of_inclined(result, record)
+        return [], floor, [_WALL_OF_INCLINED, *([reason] if floor is None else [])]
     sides = case.uncut_band.walls(result.setup.cutter.radius)
     found = [_wall(result, record, side) for side in sides]
     walls = [wall for wall in found if wall is not None]
@@ -217,6 +222,51 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     if not np.all(np.isfinite(profile)):
         return None, "floor: the tool moves too far for its corners to meet"
     return FloorProfile(x, profile, sharp=cutter.corner_radius == 0.0), ""
+
+
+def _floor_of_inclined(
+    result: SimulationResult, record: _Record
+) -> tuple[FloorProfile | None, str]:
+    """Floor along the line of the lowest points of an inclined tool, or why there is none.
+
+    Its edges pass that point with the normal of the floor, on an arc along the feed whose curvature
+    is that of the corner and of the circle about the axis by their directions (Euler).
+    """
+    cutter, case = result.setup.cutter, result.case
+    corner = cutter.corner_radius
+    if corner == 0.0:
+        return None, "floor: the feed marks of a sharp corner on an inclined tool are not evaluated"
+    engaged = inclined_engagement(case, cutter)
+    direction, immersion = engaged.floor_point
+    height, sine = corner * (1.0 - math.cos(immersion)), math.sin(immersion)
+    lag = np.tan(np.asarray(cutter.helix)) / cutter.radius * height
+    angle, edge = record.longer.passes(cutter.tooth_angles - lag, direction, _MARGIN)
+    position = record.longer.at(angle)
+    reach = cutter.radial_offsets * sine + cutter.axial_offsets * math.cos(immersion)
+    lowest = position[:, 2] - reach[edge]
+    about_axis = engaged.frame @ [math.cos(direction), -math.sin(direction), 0.0]
+    share = float(about_axis[0]) ** 2
+    circle = cutter.radius - corner + corner * sine
+    curvature = (1.0 - share) / corner + (share * sine / circle if circle > 0.0 else share / corner)
+    return _floor_along(result, record, position[:, 0], lowest, 1.0 / curvature)
+
+
+def _floor_along(
+    result: SimulationResult, record: _Record, at: Array, lowest: Array, radius: float
+) -> tuple[FloorProfile | None, str]:
+    """Floor of arcs of a radius whose lowest points are given along the feed, m."""
+    feed_per_revolution = result.case.cut.feed_per_tooth * result.setup.cutter.teeth
+    spacing = _spacing(result, record.evaluated)
+    # what later revolutions will still cut is excluded at the end
+    start = max(at.min() + feed_per_revolution, record.evaluated.position[0, 0])
+    count = math.floor((at.max() - feed_per_revolution - start) / spacing)
+    if count < _POINTS_A_TOOTH:
+        return None, "floor: the run is too short for it to be evaluated"
+    x = start + spacing * np.arange(count)
+    profile = floor_height(x, at, lowest, radius, feed_per_revolution)
+    if not np.all(np.isfinite(profile)):
+        return None, "floor: the tool moves too far for its corners to meet"
+    return FloorProfile(x, profile), ""
 
 
 def _crossing(tip_radius: float, middle: float, band: UncutBand) -> float | None:

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.cutter import cutter_of
+from chatter.compile.inclined_axis import is_inclined
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.simulation.inclined_slices import InclinedSlices, inclined_slices
 from cutting.engagement.immersion import slice_engagement
 from cutting.engagement.slice_bounds import SliceLimits, slice_bounds
 from cutting.tool.cutter import Cutter, slices_between
@@ -72,7 +75,12 @@ def shortest_arc(case: Case, cutter: Cutter, radius: float) -> float:
 
 
 def _arc_at(case: Case, radius: float) -> float:
-    """Angle from entry to exit of an edge at a radius, m, in the cut of [cut], rad."""
+    """Angle from entry to exit of an edge at a radius, m, in the cut of [cut], rad.
+
+    Of an inclined tool the longest of all.
+    """
+    if is_inclined(case):
+        return slices_of_inclined(case, cutter_of(case)).longest_arc
     entry, leave = slice_engagement(case.uncut_band, np.array([radius]))
     return float(leave[0] - entry[0])
 
@@ -141,6 +149,8 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
 
     They are graded over what of the edge is in the cut of [cut]; a stock may be anywhere.
     """
+    if is_inclined(case):
+        return slices_of_inclined(case, cutter).bounds
     section = case.simulation
     chip = section.chip if section else "delay"
     band = case.uncut_band if case.stock is None else None
@@ -163,6 +173,11 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
             f"helix or the waves of the edge; at most {_MOST_SLICES} are allowed"
         )
     return bounds
+
+
+def slices_of_inclined(case: Case, cutter: Cutter) -> InclinedSlices:
+    """Slices of an inclined tool, and their arcs; `simulation.slices` does not fix them."""
+    return inclined_slices(case, cutter, _LIMITS["delay"].lag, min(1.0, _refinement(case)))
 
 
 def _part_of_a_wave(case: Case) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table, force_law, helix_angles
 from chatter.compile.empirical import force_factor
-from chatter.compile.inclined_axis import refuse_inclined_axis
+from chatter.compile.inclined_axis import check_inclined_axis, is_inclined, tool_axis
 from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
@@ -19,7 +19,7 @@ from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
 from chatter.description.stated_engagement import ENGAGEMENT_KEYS
 from chatter.description.units import rpm
-from chatter.simulation.resolution import Resolution
+from chatter.simulation.resolution import Resolution, slices_of_inclined
 from chatter.simulation.spindle import (
     ProgrammedSpindle,
     Spindle,
@@ -34,6 +34,7 @@ from chatter.simulation.tool_course import ToolCourse, tool_course
 from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut, reading_notes
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
+from cutting.chip.inclined_chip import InclinedCut, inclined_cut
 from cutting.chip.regeneration import delayed_cut
 from cutting.engagement.immersion import slice_arcs, slice_engagement
 from cutting.process_damping.contact import ToolContact
@@ -173,7 +174,7 @@ def check_case(case: Case) -> None:
     """Refuse a case that lacks what a simulation needs, or whose numbers cannot be meant."""
     case.require("tool", "material", "cut")
     check_plausible(case)
-    refuse_inclined_axis(case)
+    check_inclined_axis(case)
     refuse_teeth_off_the_tool(case)
 
 
@@ -182,7 +183,7 @@ def _compiled(
 ) -> Setup:
     """Compile tool, chip and contact on a structure, along the course of a program if given."""
     resolution = structure.resolution
-    slices = slices_between(cutter, resolution.bounds)
+    slices = _slices(case, cutter, resolution)
     _refuse_crossing_flutes(case, slices)
     _refuse_out_of_reach(case, slices)
     spindle, path = spindle_of(case), path_of(case)
@@ -201,7 +202,9 @@ def _compiled(
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     notes += tuple(notes_on_worn_flank(case, force_law(case, helix_angles(case)[0])))
-    chip = case.simulation.chip if case.simulation else "delay"
+    chip = "inclined" if is_inclined(case) else "delay"
+    if case.simulation is not None and case.simulation.chip != "delay":
+        chip = case.simulation.chip
     groups: tuple = (CHIPS[chip](case, cutter, slices, structure.modes, resolution, spindle, path),)
     if isinstance(groups[0], DiscreteCut):
         notes += reading_notes(case, cutter, groups[0])
@@ -221,6 +224,13 @@ def _compiled(
         furthest=_furthest(cutter, structure, course),
         notes=notes,
     )
+
+
+def _slices(case: Case, cutter: Cutter, resolution: Resolution) -> EdgeSlices:
+    """Slices of the edges; of an inclined tool those that are in the cut."""
+    if is_inclined(case):
+        return slices_of_inclined(case, cutter).slices
+    return slices_between(cutter, resolution.bounds)
 
 
 def _furthest(cutter: Cutter, structure: StructureInTime, course: ToolCourse | None) -> float:
@@ -265,6 +275,13 @@ def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
 
 def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
     """Refuse a cut that no slice of the edge reaches."""
+    if is_inclined(case):
+        if slices.height.size == 0:
+            raise InputError(
+                f"{case.name}: cut.{_stated(case)}: down to an axial depth of "
+                f"{case.cut.axial_depth * 1e3:g} mm no edge of the inclined tool reaches the work"
+            )
+        return
     entry, leave = slice_engagement(case.uncut_band, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
@@ -305,5 +322,29 @@ def _delayed(
     )
 
 
-#: name in a case file -> group of the cutting force
-CHIPS = {"delay": _delayed, "dexel": discrete_cut, "voxel": discrete_cut}
+def _inclined(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    modes: tuple[Mode, ...],  # noqa: ARG001
+    resolution: Resolution,
+    spindle: Spindle | ProgrammedSpindle,
+    path: ToolPath | ToolCourse,
+) -> InclinedCut:
+    """Delayed chip of a tool with an inclined axis, set up in the axes of the tool."""
+    bins, frame = resolution.steps_per_revolution, tool_axis(case).frame
+    engaged = slices_of_inclined(case, cutter)
+    before = path_of_last_revolution(spindle, path, bins)
+    cut = delayed_cut(
+        slices,
+        (engaged.entry, engaged.exit),
+        edge_law(case),
+        flank_table(case, slices.radius, 2.0 * math.pi / bins),
+        bins,
+        frame[:2].T @ before,
+    )
+    return inclined_cut(cut, frame)
+
+
+#: name in a case file -> group of the cutting force; "inclined" where the axis is, for "delay"
+CHIPS = {"delay": _delayed, "inclined": _inclined, "dexel": discrete_cut, "voxel": discrete_cut}

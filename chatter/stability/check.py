@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from chatter.compile.cutter import cutter_of
+from chatter.compile.inclined_axis import effective_diameter, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.progress import Progress, no_progress
@@ -23,6 +24,7 @@ from chatter.io.result_files import (
     short_repr,
     write_results,
 )
+from chatter.simulation.resolution import slices_of_inclined
 from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
@@ -187,8 +189,11 @@ class StabilityCheck(NotebookResult):
         cut, tool = self.case.cut, self.case.tool
         speed = cut.spindle_speed * tool.diameter / 2.0
         cutter, effective = cutter_of(self.case), []
-        if not cutter.is_cylindrical:
+        inclined = is_inclined(self.case)
+        if inclined or not cutter.is_cylindrical:
             wide = 2.0 * cutter.radius_at(cut.axial_depth)
+            if inclined:
+                wide = effective_diameter(inclined_engagement(self.case, cutter))
             there = f"{30.0 * wide * cut.spindle_speed:.4g} m/min there"
             effective = [["effective diameter", f"{1e3 * wide:.4g} mm, {there}"]]
         return [
@@ -211,13 +216,25 @@ class StabilityCheck(NotebookResult):
         return [["tool life", f"{self.case.tool_life.life_at(speed) / 60.0:.3g} min"]]
 
     def _engagement(self) -> list[list[str]]:
-        """Width and angles where the edge is at the depth of the cut."""
+        """Width and angles where the edge is at the depth of the cut; inclined, of all edges."""
+        if is_inclined(self.case):
+            return self._engagement_of_inclined()
         radius = np.array([cutter_of(self.case).radius_at(self.case.cut.axial_depth)])
         band = self.case.uncut_band
         entry, leave = np.degrees(slice_engagement(band, radius))[:, 0]
         return [
             ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
             ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
+        ]
+
+    def _engagement_of_inclined(self) -> list[list[str]]:
+        case = self.case
+        found = slices_of_inclined(case, cutter_of(case))
+        entry, leave = np.degrees(found.reach)
+        width = inclined_engagement(case, cutter_of(case)).width
+        return [
+            ["width of cut", f"{1e3 * width:.4g} mm"],
+            ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg about the inclined axis"],
         ]
 
     def _lowest(self) -> list[list[str]]:

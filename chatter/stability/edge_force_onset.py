@@ -38,8 +38,8 @@ def edge_force_onset(model: MillingModel, depth: float) -> float:
         return 0.0
     onset, chip = 0.0, 0.0
     for p in range(points.angle.size):
-        onset = onset + _onset_of(points, p, edge, model.basis)
-        chip = chip + _chip_of(points, p, model.basis)
+        onset = onset + _onset_of(points, p, edge, model.basis_on_tool)
+        chip = chip + _chip_of(points, p, model.basis_on_tool)
     whole = float(np.linalg.norm(chip))
     return float(np.linalg.norm(onset)) / whole if whole > 0.0 else 0.0
 

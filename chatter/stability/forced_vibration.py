@@ -189,7 +189,7 @@ def _vibration_of(steady: SteadyMotion, model: MillingModel) -> ForcedVibration:
         if not inside.size:
             continue
         earlier = (wave[inside] @ (np.exp(-1j * order * points.delay[p])[:, None] * driven)).real
-        _, chip_of = directions(points, p, phi, model.basis)
+        _, chip_of = directions(points, p, phi, model.basis_on_tool)
         vibrating = np.einsum("ni,ni->n", chip_of, motion[inside] - earlier)
         cut += points.length[p] * chip.size
         loss_of_contact += points.length[p] * np.count_nonzero(chip + vibrating <= 0.0)

@@ -10,7 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
-from chatter.compile.inclined_axis import refuse_inclined_axis
+from chatter.compile.inclined_axis import (
+    check_inclined_axis,
+    inclined_engagement,
+    is_inclined,
+    tool_axis,
+)
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
 from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_limits, notes_on_worn_flank
@@ -24,8 +29,14 @@ from chatter.stability.averaged_coefficients import AveragedCoefficients, averag
 from chatter.stability.cut_arrays import CutArrays, cut_arrays
 from chatter.stability.spindle_rotation import CONSTANT_SPEED, SpeedVariation
 from cutting.edge_segments.edge_profile import crossing_heights
-from cutting.edge_segments.segments import EdgeSegments, edge_segments, period_angle
+from cutting.edge_segments.segments import (
+    EdgeSegments,
+    edge_segments,
+    inclined_edge_segments,
+    period_angle,
+)
 from cutting.engagement.immersion import engagement
+from cutting.engagement.inclined_tool import InclinedEngagement
 from cutting.force.directional_coefficients import (
     DirectionalTable,
     directional_table,
@@ -106,6 +117,24 @@ class MillingModel:
         return own
 
     @property
+    def is_inclined(self) -> bool:
+        """True where the tool axis is inclined: the arcs of its edges change with the depth."""
+        return is_inclined(self.case)
+
+    @cached_property
+    def basis_on_tool(self) -> Array:
+        """Directions of motion (3, r) in the axes of the tool, in which its edges are described."""
+        if not self.is_inclined:
+            return self.basis
+        return np.ascontiguousarray(tool_axis(self.case).frame.T @ self.basis)
+
+    def at_cut(self, speed: float, depth: float) -> MillingModel:
+        """The model with another cut as its operating point: speed in rad/s, depth in m."""
+        changed = {"spindle_speed": speed, "axial_depth": depth}
+        cut = self.case.cut.model_copy(update=changed)
+        return replace(self, case=self.case.model_copy(update={"cut": cut}))
+
+    @property
     def lag_per_depth(self) -> float:
         """tan(helix)/R of the first tooth, rad/m."""
         return abs(math.tan(self.cutter.helix[0])) / self.cutter.radius
@@ -182,6 +211,7 @@ class MillingModel:
             and cutter.is_cylindrical
             and np.ptp(cutter.radial_offsets) == 0.0
             and cutter.serration is None
+            and not self.is_inclined
             and self.case.cut.speed_variation is None
         )
 
@@ -213,18 +243,11 @@ class MillingModel:
     def cut(self, max_depth: float, relative_length: float = 1.0) -> CutArrays:
         """The cut down to a depth (m), speed and depth left open.
 
-        `relative_length` is a factor on the length of the edge segments.
+        Of an inclined tool it is the cut at that depth alone. `relative_length` is a factor on the
+        length of the edge segments.
         """
         case = self.case
-        segments = _segments_of(
-            self.cutter,
-            self.laws,
-            case.uncut_band,
-            case.cut.feed_per_tooth * self.teeth,
-            max_depth,
-            self.flank,
-            relative_length,
-        )
+        segments = self._segments(max_depth, relative_length)
         if self.steady_path is not None:
             segments = segments._replace(flank=self._linear_flank)
         varied = case.cut.speed_variation
@@ -234,7 +257,16 @@ class MillingModel:
                 varied.amplitude, varied.frequency, int(varied.shape == "triangle")
             )
         period = period_angle(self.cutter)
-        return cut_arrays(self.modal_arrays, self.basis, segments, period, variation)
+        return cut_arrays(self.modal_arrays, self.basis_on_tool, segments, period, variation)
+
+    def _segments(self, depth: float, relative_length: float) -> EdgeSegments:
+        case, feed = self.case, self.case.cut.feed_per_tooth * self.teeth
+        if self.is_inclined:
+            engaged = inclined_engagement(case, self.cutter, depth)
+            return _inclined_segments_of(engaged, self.laws, feed, self.flank, relative_length)
+        return _segments_of(
+            self.cutter, self.laws, case.uncut_band, feed, depth, self.flank, relative_length
+        )
 
     @cached_property
     def receptance(self) -> tuple[Array, ComplexArray]:
@@ -252,6 +284,14 @@ def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> Ed
     return edge_segments(cutter, list(laws), *cut)
 
 
+@lru_cache(maxsize=_KEPT_SEGMENTS)
+def _inclined_segments_of(
+    engaged: InclinedEngagement, laws: tuple[ForceLaw, ...], *cut: object
+) -> EdgeSegments:
+    """Edge segments of an inclined tool, kept."""
+    return inclined_edge_segments(engaged, list(laws), *cut)
+
+
 def milling_model(case: Case, structure: Structure | None = None) -> MillingModel:
     """Compile a case for the stability methods.
 
@@ -260,7 +300,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     """
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
-    refuse_inclined_axis(case)
+    check_inclined_axis(case)
     refuse_teeth_off_the_tool(case)
     if structure is None:
         structure = structure_of(case)
@@ -315,6 +355,12 @@ def empirical_notes(case: Case) -> list[str]:
 
 
 def _no_limit(case: Case, cutter: Cutter) -> str:
+    if is_inclined(case):
+        return (
+            f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm no "
+            "edge of the inclined tool reaches the work, or the modes move without changing the "
+            "chip; there is no stability limit"
+        )
     if not cutter.is_cylindrical:
         return (
             f"{case.name}: cut.radial_depth: down to an axial depth of "
@@ -339,7 +385,10 @@ def _hint_of_stepover(case: Case) -> str:
 
 
 def _refuse_crossing_flutes(case: Case, cutter: Cutter) -> None:
-    heights = crossing_heights(cutter, case.cut.axial_depth)
+    depth = case.cut.axial_depth
+    if is_inclined(case):
+        depth = inclined_engagement(case, cutter).top
+    heights = crossing_heights(cutter, depth)
     if heights:
         raise InputError(
             f"{case.name}: tool.helix: flutes of these angles run into each other "

@@ -116,7 +116,7 @@ class StabilityMethod:
         self.check(model)
 
         def limits(own: MillingModel, index: IntegerArray, report: Progress) -> LimitCurve:
-            return self.limits_of(Sweep(own, speeds[index], depths, steps, report))
+            return self._limits_of(Sweep(own, speeds[index], depths, steps, report))
 
         if not self.follows_flank(model):
             return joined_limits(speeds, over_reference_speeds(model, speeds, limits, progress))
@@ -154,12 +154,25 @@ class StabilityMethod:
             return radius_about_steady_motion(model, speeds, depths, at, progress)
 
         def radius(own: MillingModel, index: IntegerArray, report: Progress) -> Array:
-            return self.radius_of(Sweep(own, speeds[index], depths[index], steps, report))
+            sweep = Sweep(own, speeds[index], depths[index], steps, report)
+            if self.is_linear and own.is_inclined:
+                from chatter.stability.limits_by_depth import radius_by_depth
+
+                return radius_by_depth(self, sweep)
+            return self.radius_of(sweep)
 
         found = np.empty(len(speeds))
         for index, values in over_reference_speeds(model, speeds, radius, progress):
             found[index] = values
         return found
+
+    def _limits_of(self, sweep: Sweep) -> LimitCurve:
+        """Limits with the same dynamics at all speeds, of a cut that each depth may have anew."""
+        if self.is_linear and self.gives_radius and sweep.model.is_inclined:
+            from chatter.stability.limits_by_depth import limits_by_depth
+
+            return limits_by_depth(self, sweep)
+        return self.limits_of(sweep)
 
     def follows_flank(self, model: MillingModel) -> bool:
         """Tell whether a flank that ploughs is taken beside the steady motion of each cut."""

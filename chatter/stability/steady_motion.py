@@ -97,7 +97,7 @@ def steady_motion(model: MillingModel, speed: float, depth: float) -> SteadyMoti
     spindle = period * (np.arange(samples) + 0.5) / samples
     receptance = _receptance(model, order * speed)
     edge = np.array(getattr(model.laws[0], "edge", (0.0, 0.0, 0.0)))
-    rigid = _rigid_cut(points, cut.segments, spindle, edge, model.basis, _PHASE / order[-1])
+    rigid = _rigid_cut(points, cut.segments, spindle, edge, model.basis_on_tool, _PHASE / order[-1])
     loop = np.eye(order.size * model.basis.shape[1], dtype=np.complex128)
     if np.any(np.abs(points.delay - period) > _SAME_DELAY):
         # with a uniform pitch every tooth meets the wave of the last in phase
@@ -132,7 +132,7 @@ def _with_ploughing(
     for _ in range(_NEWTON_STEPS):
         path = motion._replace(harmonics=harmonics).path(motion.spindle)
         force, damping, steepest, pressed = _flank_along(
-            motion.points, motion.spindle, path, model.basis, force_of, table, least
+            motion.points, motion.spindle, path, model.basis_on_tool, force_of, table, least
         )
         beside = force - np.einsum("nij,nj->ni", damping, path)
         pushed = driven + np.einsum("kij,kj->ki", receptance, wave @ beside)
@@ -166,7 +166,8 @@ def edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
             kappa = _between(segments.immersion[segment], along)
             sine = math.sin(kappa)
             offset = sine * _between(segments.radial_offset[segment], height)
-            offset += math.cos(kappa) * segments.axial_offset[segment]
+            along_axis = segments.axial_offset[segment] + segments.axial_feed * delay
+            offset += math.cos(kappa) * along_axis
             length = segments.length[segment] * top / parts
             columns.append(
                 (

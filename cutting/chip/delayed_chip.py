@@ -16,7 +16,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.chip.delayed_edge import at_jump, chip_at, part_of_slice, straight_mean, whole_slice
-from cutting.chip.tool_point import Rotation, TurningRotation
+from cutting.chip.tool_point import InclinedRotation, Rotation, TurningRotation
 from cutting.compiled import INLINED, by_table
 from cutting.process_damping.flank import BARE, LEAVES, end_contact, flank_force, store_surface
 from cutting.tool.edge_table import EdgeTable, direction, force_on_tool, signed_bin, spindle_bin
@@ -78,15 +78,46 @@ def _bin_as_it_turns(rotation, edges, whole, part):
 
 
 #: angle by which the arcs of the cut turn with the feed, clockwise ones becoming smaller, bins
-_heading = by_table({Rotation: _along_x, TurningRotation: _as_it_turns})
-_position = by_table({Rotation: _bin_along_x, TurningRotation: _bin_as_it_turns})
+_heading = by_table({Rotation: _along_x, TurningRotation: _as_it_turns, InclinedRotation: _along_x})
+_position = by_table(
+    {Rotation: _bin_along_x, TurningRotation: _bin_as_it_turns, InclinedRotation: _bin_along_x}
+)
 
 
 @register_jitable(**INLINED)
-def _place_now(rotation, point):
-    """Place of the tool against the work, m: path and vibration."""
+def _place_on_plane(rotation, point):
+    """Place of the tool on a path across its axis."""
     u = point.displacement
     return rotation.x + u[0], rotation.y + u[1], u[2]
+
+
+@register_jitable(**INLINED)
+def _place_in_space(rotation, point):
+    """Place of the tool on a path that is inclined to its axis."""
+    u = point.displacement
+    return rotation.x + u[0], rotation.y + u[1], rotation.z + u[2]
+
+
+@register_jitable(**INLINED)
+def _no_axial_path(rotation, share, position, rate):  # noqa: ARG001
+    """Place and rate along the axis of a tool whose path lies across it."""
+    return position, rate
+
+
+@register_jitable(**INLINED)
+def _with_axial_path(rotation, share, position, rate):
+    """Place and rate along the axis, m, with the path's own, at a share of the step."""
+    path = rotation.z - rotation.z_before
+    return position + rotation.z_before + share * path, rate + path
+
+
+#: place of the tool against the work, m: path and vibration
+_place_now = by_table(
+    {Rotation: _place_on_plane, TurningRotation: _place_on_plane, InclinedRotation: _place_in_space}
+)
+_along_tool_axis = by_table(
+    {Rotation: _no_axial_path, TurningRotation: _no_axial_path, InclinedRotation: _with_axial_path}
+)
 
 
 @register_jitable(**INLINED)
@@ -286,6 +317,8 @@ def _store_motion(cut, rotation, point):
             if axis == 1:
                 position += rotation.y_before + share * (rotation.y - rotation.y_before)
                 rate += rotation.y - rotation.y_before
+            if axis == 2:
+                position, rate = _along_tool_axis(rotation, share, position, rate)
             cut.history[0, passed, axis] = position
             cut.history[1, passed, axis] = rate / rotation.advance
 

@@ -34,8 +34,9 @@ def delayed_cut(
         Tables of the force laws.
     bins : int
         Of a turn.
-    path : (2, bins + 1) array of float
-        Place of the tool axis over the last turn before the start, m, which comes last.
+    path : (2 or 3, bins + 1) array of float
+        Place of the tool over the last turn before the start, m, which comes last; the third row
+        is along the tool axis.
 
     Returns
     -------
@@ -91,10 +92,11 @@ def motion_before(path: NDArray[np.float64]) -> NDArray[np.float64]:
     """Motion over the last turn before the start, of a tool that has not vibrated: (2, bins, 3)."""
     bins = path.shape[1] - 1
     history = np.zeros((2, bins, 3))
-    history[0, :, :2] = path[:, :-1].T
+    axes = len(path)
+    history[0, :, :axes] = path[:, :-1].T
     slope = np.diff(path, axis=1)
-    history[1, 1:, :2] = 0.5 * (slope[:, 1:] + slope[:, :-1]).T
-    history[1, 0, :2] = slope[:, 0]
+    history[1, 1:, :axes] = 0.5 * (slope[:, 1:] + slope[:, :-1]).T
+    history[1, 0, :axes] = slope[:, 0]
     return history
 
 

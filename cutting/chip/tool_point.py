@@ -69,6 +69,28 @@ class TurningRotation(NamedTuple):
     heading: float  # of the feed from +x towards +y, bins, 0 to a revolution
 
 
+class InclinedRotation(NamedTuple):
+    """Rotation in the axes of an inclined tool: the fields of `Rotation`, and the path along z."""
+
+    whole: int
+    part: float
+    sine: float
+    cosine: float
+    sine_before: float
+    cosine_before: float
+    whole_before: int
+    part_before: float
+    advance: float  # bins from the step before
+    speed: float  # rad/s
+    step: float  # s
+    x: float  # m
+    y: float
+    x_before: float
+    y_before: float
+    z: float  # along the tool axis, m
+    z_before: float
+
+
 def tool_point() -> ToolPoint:
     """Return a tool point at rest."""
     return ToolPoint(

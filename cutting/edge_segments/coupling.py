@@ -23,6 +23,7 @@ _VANISHED = 1e-3
 @register_jitable(**INLINED)
 def part_below(segments, segment, depth):
     """Part of a segment, from its low end and along its length, that lies below a depth (m)."""
+    depth = depth + segments.lift
     share = (depth - segments.bottom[segment]) / segments.thickness[segment]
     if share >= 1.0:
         return 1.0
@@ -34,8 +35,9 @@ def part_below(segments, segment, depth):
 
 
 @register_jitable(**INLINED)
-def radius_at(segments, height):
-    """Radius of the edge at a height above the tip, m."""
+def radius_at(segments, depth):
+    """Radius of the edge where it is engaged at a depth of cut, m."""
+    height = depth + segments.lift
     radius, corner, angle = segments.outline[0], segments.outline[1], segments.outline[2]
     top = corner * (1.0 - math.cos(angle))
     if height < top:
@@ -144,7 +146,8 @@ def chip_at(segments, segment, position, height, sine, sine_of_edge, cosine_of_e
     """
     # flutes of different helix leave each other more or less of the feed from height to height
     first, last = segments.delay[segment, 0], segments.delay[segment, 1]
-    rise = segments.feed * (first + height * (last - first))
+    turned = first + height * (last - first)
+    rise = segments.feed * turned
     vanishing = segments.vanishing[segment]
     if vanishing > 0:
         # what bends along the segment is taken for straight, and the chip must end with the arc
@@ -155,7 +158,8 @@ def chip_at(segments, segment, position, height, sine, sine_of_edge, cosine_of_e
         return sine_of_edge * rise * (sine - math.sin(border))
     low, high = segments.radial_offset[segment, 0], segments.radial_offset[segment, 1]
     radial = rise * sine - (low + height * (high - low))
-    return sine_of_edge * radial - cosine_of_edge * segments.axial_offset[segment]
+    along_axis = segments.axial_offset[segment] + segments.axial_feed * turned
+    return sine_of_edge * radial - cosine_of_edge * along_axis
 
 
 @register_jitable(**INLINED)

@@ -134,6 +134,10 @@ class Edges:
         stock = entry < leave
         return _arcs(rise, radial_offset, np.where(stock, entry, 0.0), np.where(stock, leave, 0.0))
 
+    def segment_borders(self, tooth: int, borders: Array, relative_length: float) -> Array:
+        """Borders (L,) of the segments of a tooth, m; see the function of this name."""
+        return segment_borders(self, tooth, borders, relative_length)
+
 
 def _marks(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Array:
     """Angles (P, M) in order at which two chips may be alike, or one may vanish."""

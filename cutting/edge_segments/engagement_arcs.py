@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.edge_segments.earlier_passes import GAUSS, Edges, segment_borders
+from cutting.edge_segments.earlier_passes import GAUSS, Edges
 from cutting.edge_segments.edge_profile import EdgeLine
 from cutting.engagement.immersion import slice_engagement
 from cutting.engagement.uncut_band import UncutBand
@@ -96,10 +96,7 @@ def segments_of_passes(
     Depth in m, slopes as of `segments_of_one_pass`, relative length 1 or less. Returned with the
     owner of each segment.
     """
-    borders = np.concatenate([[0.0], np.cumsum(line.length)])
-    # the line runs on to the end of the corner
-    borders = np.minimum(borders, edges.position(max_depth))
-    borders = np.append(borders[borders < borders[-1]], borders[-1])
+    borders = _borders_up_to(edges, line, max_depth)
     segments: list[Segment] = []
     owners: list[Owner] = []
     for tooth in range(edges.cutter.teeth):
@@ -107,6 +104,43 @@ def segments_of_passes(
         segments += found
         owners += of_tooth
     return segments, owners
+
+
+def segments_of_like_teeth(
+    edges: Edges,
+    line: EdgeLine,
+    max_depth: float,
+    slopes: list[NDArray[np.float64]],
+    relative_length: float,
+) -> tuple[list[Segment], list[Owner]]:
+    """The same of teeth of one helix that each cut what the one before them has left.
+
+    The first tooth stands for all: the others are turned on the tool, at their own delays.
+    """
+    borders = _borders_up_to(edges, line, max_depth)
+    first, of_first = _segments_of_tooth(edges, 0, slopes[0], borders, relative_length)
+    place = edges.cutter.tooth_angles
+    earlier, ahead = earlier_passes(place[:, None])
+    segments: list[Segment] = []
+    owners: list[Owner] = []
+    for tooth in range(edges.cutter.teeth):
+        gap, other = float(ahead[tooth, 0, 0]), int(earlier[tooth, 0, 0])
+        segments += [
+            one._replace(
+                angle=np.asarray(one.angle) + place[tooth], delay=(gap, gap), cutting=slopes[tooth]
+            )
+            for one in first
+        ]
+        owners += [owner._replace(tooth=tooth, earlier=other) for owner in of_first]
+    return segments, owners
+
+
+def _borders_up_to(edges: Edges, line: EdgeLine, max_depth: float) -> NDArray[np.float64]:
+    """Borders of the segments of a line, as lengths of edge beyond the tip, up to a height, m."""
+    borders = np.concatenate([[0.0], np.cumsum(line.length)])
+    # the line runs on to the end of the corner
+    borders = np.minimum(borders, edges.position(max_depth))
+    return np.append(borders[borders < borders[-1]], borders[-1])
 
 
 def _segments_of_tooth(
@@ -118,7 +152,7 @@ def _segments_of_tooth(
     What bends along a segment is the line through its values at two Gauss points: so the area in
     the cut, and all that is linear along it, is right to the fourth order.
     """
-    positions = segment_borders(edges, tooth, borders, relative_length)
+    positions = edges.segment_borders(tooth, borders, relative_length)
     low, high = positions[:-1], positions[1:]
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     own = np.full(middle.size, tooth)

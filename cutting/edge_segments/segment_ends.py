@@ -28,7 +28,8 @@ def is_border(segments, segment, end, depth, lowest):
         return True
     if end == 0:
         return segments.bottom[segment] <= lowest
-    return depth - segments.bottom[segment] <= segments.thickness[segment] * (1.0 + 1e-12)
+    high = depth + segments.lift
+    return high - segments.bottom[segment] <= segments.thickness[segment] * (1.0 + 1e-12)
 
 
 @register_jitable(**INLINED)

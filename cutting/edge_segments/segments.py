@@ -16,14 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutting.edge_segments.earlier_passes import Edges
-from cutting.edge_segments.edge_profile import edge_line, straight_borders
+from cutting.edge_segments.edge_profile import EdgeLine, edge_line, straight_borders
 from cutting.edge_segments.engagement_arcs import (
     Owner,
     Segment,
+    segments_of_like_teeth,
     segments_of_one_pass,
     segments_of_passes,
 )
-from cutting.engagement.uncut_band import UncutBand
+from cutting.edge_segments.inclined_edges import InclinedEdges
+from cutting.engagement.inclined_tool import InclinedEngagement
+from cutting.engagement.uncut_band import SLOT, UncutBand
 from cutting.force.law import ForceLaw, SlopePower
 from cutting.process_damping.flank import ProcessDampingLaw
 from cutting.process_damping.linear_flank import LinearFlank, bare_flank
@@ -57,7 +60,11 @@ class EdgeSegments(NamedTuple):
     radial_offset: NDArray[np.float64]  # by which the earlier edge reaches further out, m (P, 2)
     axial_offset: NDArray[np.float64]  # and further towards the work, m (P,)
     vanishing: NDArray[np.int64]  # 1, 2: there is no chip at the entry, at the exit (P,)
-    feed: float  # by which the work moves for an angle turned, m/rad
+    feed: float  # by which the work moves in the plane of rotation for an angle turned, m/rad
+    axial_feed: float  # by which it moves along the tool axis, m/rad; 0 for an upright tool
+    #: height on the edge above the depth of cut that it is engaged up to, m; 0 for an upright tool,
+    #: whose arcs are the same at every depth. Others are segments of one depth alone
+    lift: float
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
     turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
@@ -106,8 +113,52 @@ def edge_segments(
     sized = power.exponent != 0.0
     order, first_of_group = segment_groups(segments, owners, sized=sized, apart=wave and sized)
     segments = [segments[i] for i in order]
+    feed = (feed_per_revolution / _REVOLUTION, 0.0)
+    return _as_arrays(segments, turning[order], first_of_group, cutter, power, flank, feed, 0.0)
+
+
+def inclined_edge_segments(
+    engagement: InclinedEngagement,
+    laws: list[ForceLaw],
+    feed_per_revolution: float,
+    flank: ProcessDampingLaw | None = None,
+    relative_length: float = 1.0,
+) -> EdgeSegments:
+    """Cut the edges of a tool with an inclined axis into segments, for its axial depth alone.
+
+    In the axes of the tool. Parameters as of `edge_segments`.
+    """
+    cutter = engagement.cutter
+    edges, line, top = inclined_line(engagement, feed_per_revolution, relative_length)
+    slopes = [law.slope_power.cutting for law in laws]
+    if edges.teeth_are_alike:
+        segments, owners = segments_of_like_teeth(edges, line, top, slopes, relative_length)
+    else:
+        segments, owners = segments_of_passes(edges, line, top, slopes, relative_length)
+    turning = turning_ends(segments, owners, serrated=False)
+    power = laws[0].slope_power
+    order, first_of_group = segment_groups(
+        segments, owners, sized=power.exponent != 0.0, apart=False
+    )
+    segments = [segments[i] for i in order]
+    highest = max((one.bottom + one.thickness for one in segments), default=top)
     feed = feed_per_revolution / _REVOLUTION
-    return _as_arrays(segments, turning[order], first_of_group, cutter, power, flank, feed)
+    along = (feed * engagement.along_feed, feed * engagement.along_axis)
+    return _as_arrays(
+        segments, turning[order], first_of_group, cutter, power, flank, along,
+        highest - engagement.axial_depth,
+    )  # fmt: skip
+
+
+def inclined_line(
+    engagement: InclinedEngagement, feed_per_revolution: float, relative_length: float = 1.0
+) -> tuple[InclinedEdges, EdgeLine, float]:
+    """Edges of an inclined tool, their profile, and the height that they may be engaged to, m."""
+    cutter, top = engagement.cutter, engagement.top
+    step = relative_length * _SEGMENT_TURN_OF_PASSES
+    heights = straight_borders(cutter, top, SLOT, True, step, relative_length)
+    line = edge_line(cutter, top, SLOT, heights, step)
+    return InclinedEdges(engagement, feed_per_revolution), line, top
 
 
 def _as_arrays(
@@ -117,7 +168,8 @@ def _as_arrays(
     cutter: Cutter,
     power: SlopePower,
     flank: ProcessDampingLaw | None,
-    feed: float,
+    feed: tuple[float, float],
+    lift: float,
 ) -> EdgeSegments:
     count = len(segments)
     # where no edge reaches the stock the shapes are those of one segment
@@ -139,7 +191,8 @@ def _as_arrays(
         bottom=table.bottom, thickness=table.thickness, length=table.length, angle=table.angle,
         entry=table.entry, exit=table.exit, delay=delay, immersion=table.immersion,
         radius=table.radius, delay_index=delay_index, distinct_delay=np.array(distinct),
-        cutting=table.cutting, feed=feed, radial_offset=table.radial_offset,
+        cutting=table.cutting, feed=feed[0], axial_feed=feed[1], lift=lift,
+        radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
         vanishing=np.asarray(table.vanishing, dtype=np.int64), exponent=power.exponent,
         reference=power.reference, turning=turning,

@@ -85,10 +85,10 @@ class Cut(Section):
     )
     exit_angle: quantity("angle", above=0.0, at_most=math.pi) | None = None
     lead: quantity("angle", above=-0.5 * math.pi, below=0.5 * math.pi) = Field(
-        0.0, description="of the tool axis, towards the feed; anything but 0 is refused as yet"
+        0.0, description="of the tool axis from the normal of the surface, towards the feed"
     )
     tilt: quantity("angle", above=-0.5 * math.pi, below=0.5 * math.pi) = Field(
-        0.0, description="of the tool axis, across the feed; anything but 0 is refused as yet"
+        0.0, description="of the tool axis from the normal of the surface, towards +y"
     )
     speed_variation: SpeedVariation | None = None
     cut_time: quantity("time", at_least=0.0) = Field(

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
@@ -161,6 +162,7 @@ def _refined(search: OptimumSearch, start: OperatingPoint) -> OperatingPoint:
 
 def _refuse(case: Case) -> None:
     case.require("tool", "material", "cut", "structure")
+    refuse_inclined_axis(case)
     if case.cut.speed_variation is not None:
         raise InputError(
             f"{case.name}: cut.speed_variation: the optimum is sought at a constant speed; "

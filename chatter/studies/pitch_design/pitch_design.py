@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.compile.cutter import pitch_angles
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
@@ -61,6 +62,7 @@ def pitch(
         If it is interrupted; finished designs are in the folder.
     """
     case.require("tool", "material", "cut", "structure")
+    refuse_inclined_axis(case)
     if case.tool.teeth < 2:
         raise InputError(f"{case.name}: tool.teeth: one tooth has no pitch to choose")
     with ResultCache(folder, "pitch", fingerprint(case)) as cache:

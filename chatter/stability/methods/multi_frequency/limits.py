@@ -1,5 +1,7 @@
 """Limits over spindle speed by the multi-frequency solution."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray
@@ -70,7 +72,7 @@ def frequency_marks(lines: Array, base: float) -> Array:
 
 
 def limit_curve(
-    cut: CutArrays,
+    cut_at: Callable[[float], CutArrays],
     response: FrequencyResponse,
     speeds: Array,
     depths: Array,
@@ -78,15 +80,20 @@ def limit_curve(
 ) -> LimitCurve:
     """Limits of stability at every spindle speed (rad/s), searched on a grid of depths (m).
 
-    The cut is at a constant speed; of its modes only the highest frequency is used. `progress` is
+    `cut_at` gives the cut for a depth, m, at a constant speed; of its modes only the highest
+    frequency is used. `progress` is
     called with (done, total) depths of the grid. RunError is raised if the harmonics do not reach
     up to the highest mode; see `harmonic_counts`.
     """
+    cut = cut_at(float(depths[-1]))
     counts = harmonic_counts(cut.fastest, cut.period_angle, speeds)
     orders = 2 * int(counts.max()) + 1
     base = 2.0 * np.pi / cut.period_angle * speeds
     lines = _changing_lines(response)
     marks = [frequency_marks(lines, float(b)) for b in base]
+
+    def at_one_depth(depth: float) -> Harmonics:
+        return harmonics_at(cut_at(depth), depth, orders)
 
     def at(speed: int, harmonics: Harmonics) -> tuple:
         # the coefficients of the orders that this speed needs
@@ -98,7 +105,7 @@ def limit_curve(
         return 1.0 if unstable_roots(*at(speed, harmonics)) > 0 else -1.0
 
     def at_depth(row: int) -> list[float]:
-        harmonics = harmonics_at(cut, float(depths[row]), orders)
+        harmonics = at_one_depth(float(depths[row]))
         return [side(speed, harmonics) for speed in range(len(speeds))]
 
     # the coefficients of one depth at a time: a tool of many delays has a good many of them
@@ -108,13 +115,13 @@ def limit_curve(
         def at(point: int) -> float:
             if depth[point] == 0.0:
                 return -1.0
-            return side(int(index[point]), harmonics_at(cut, float(depth[point]), orders))
+            return side(int(index[point]), at_one_depth(float(depth[point])))
 
         return np.array(each(at, len(index), points_a_chunk=4))
 
     def at_limits(index: IntegerArray, depth: Array) -> tuple[list[str], Array]:
         found = [
-            chatter_frequency(*at(int(i), harmonics_at(cut, float(d), orders)))
+            chatter_frequency(*at(int(i), at_one_depth(float(d))))
             for i, d in zip(index, depth, strict=True)
         ]
         kinds = ["flip" if share > 0.5 - _FLIP else "hopf" for _, share in found]

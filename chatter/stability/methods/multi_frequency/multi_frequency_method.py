@@ -22,13 +22,18 @@ class MultiFrequency(StabilityMethod):
 
     def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits from the FRFs themselves."""
+        from chatter.stability.limits_by_depth import few_depths
         from chatter.stability.methods.multi_frequency.determinant import FrequencyResponse
         from chatter.stability.methods.multi_frequency.limits import limit_curve
 
         model, speeds, depths, _, progress = sweep
         lines, receptance = model.receptance
         response = FrequencyResponse(2.0 * np.pi * lines, np.ascontiguousarray(receptance))
-        return limit_curve(model.cut(sweep.max_depth), response, speeds, depths, progress)
+        if model.is_inclined:
+            few = few_depths(depths)
+            return limit_curve(model.cut, response, speeds, few, progress)
+        cut = model.cut(sweep.max_depth)
+        return limit_curve(lambda _: cut, response, speeds, depths, progress)
 
 
 MULTI_FREQUENCY = MultiFrequency()

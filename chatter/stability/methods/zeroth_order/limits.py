@@ -37,7 +37,7 @@ def _limits_of_structure(model: MillingModel, speeds: Array) -> ZeroOrderLimit:
     if model.is_uniform:
         return zero_order_limit(*model.receptance, model.averaged_directional, model.teeth, speeds)
     averaged = model.averaged_coefficients
-    if not model.cutter.is_cylindrical:
+    if model.is_inclined or not model.cutter.is_cylindrical:
         depth = model.case.cut.axial_depth
         some = speeds[:: -(-len(speeds) // _SPEEDS_FOR_DEPTH)]
         for _ in range(_DEPTH_STEPS):

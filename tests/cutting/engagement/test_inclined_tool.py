@@ -1,0 +1,189 @@
+"""Engagement of an inclined tool against the bodies that it has swept, and against areas by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from cutting.edge_segments.inclined_edges import InclinedEdges
+from cutting.edge_segments.segments import inclined_edge_segments
+from cutting.engagement.inclined_tool import InclinedEngagement, ToolAxis
+from cutting.force.linear import LinearLaw
+from cutting.tool.cutter import Cutter
+
+BALL = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, corner_radius=5e-3)
+BULL_NOSE = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, corner_radius=1e-3)
+END_MILL = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2)
+DEPTH = 0.5e-3
+
+
+def turned(lead, tilt):
+    """Rotation of the tool: about +y by the lead, then about -x by the tilt."""
+    return Rotation.from_euler("x", -tilt) * Rotation.from_euler("y", lead)
+
+
+def inside(cutter, rotation, points, shrunk=0.0):
+    """Whether points (n, 3), m from the tip, lie within the body of the tool, smaller by a bit."""
+    x, y, height = (rotation.inv().apply(points)).T
+    out, corner = np.hypot(x, y), cutter.corner_radius
+    beyond = out - (cutter.radius - corner)
+    on_corner = np.hypot(np.maximum(beyond, 0.0), height - corner) < corner - shrunk
+    below = np.where(beyond > 0.0, on_corner, height > shrunk)
+    return np.where(height < corner, below, out < cutter.radius - shrunk)
+
+
+def edge_point(cutter, kappa, height, angle):
+    """Point of an edge, m from the tip in the axes of the tool."""
+    corner = cutter.corner_radius
+    out = cutter.radius - corner + corner * math.sin(kappa)
+    return np.array([out * math.sin(angle), out * math.cos(angle), height])
+
+
+def lowest_point(cutter, rotation):
+    """Height of the lowest of many points of the profile, m."""
+    kappa = np.linspace(0.0, 0.5 * math.pi, 4001)
+    out = cutter.radius - cutter.corner_radius * (1.0 - np.sin(kappa))
+    height = cutter.corner_radius * (1.0 - np.cos(kappa))
+    up = rotation.apply([0.0, 0.0, 1.0])[2]
+    return float(np.min(height * up - out * math.sqrt(1.0 - up * up)))
+
+
+def uncut(cutter, rotation, point, side, stepover, shrunk):
+    """Whether a point is left by all earlier places of the tool, in this pass and the one before.
+
+    Both are sampled along the feed.
+    """
+    behind = np.geomspace(2e-6, 15e-3, 1500)
+    passed = point + np.outer(behind, [1.0, 0.0, 0.0])
+    if np.any(inside(cutter, rotation, passed, shrunk)):
+        return False
+    if stepover is None:
+        return True
+    across = stepover if side == "up" else -stepover
+    along = np.linspace(-15e-3, 15e-3, 6001)
+    before = point + np.outer(along, [1.0, 0.0, 0.0]) + [0.0, across, 0.0]
+    return not np.any(inside(cutter, rotation, before, shrunk))
+
+
+@pytest.mark.parametrize(
+    ("cutter", "lead", "tilt", "side", "stepover"),
+    [
+        (BALL, 15, 0, "up", 0.4e-3),
+        (BALL, 10, -15, "up", 0.4e-3),
+        (BALL, -8, 12, "down", 0.6e-3),
+        (BALL, 0, 25, "slot", None),
+        (BULL_NOSE, 12, 8, "down", 2e-3),
+        (BULL_NOSE, 5, -10, "up", 3e-3),
+        (END_MILL, 4, 6, "up", 4e-3),
+    ],
+)
+def test_arcs_against_the_bodies_that_were_swept(cutter, lead, tilt, side, stepover):
+    lead, tilt = math.radians(lead), math.radians(tilt)
+    engaged = InclinedEngagement(cutter, ToolAxis(lead, tilt), DEPTH, side, stepover)
+    edges = InclinedEdges(engaged, 2e-4)
+    rotation = turned(lead, tilt)
+    surface = lowest_point(cutter, rotation) + DEPTH
+    rng = np.random.default_rng(1)
+    place = rng.uniform(0.0, edges.position(engaged.top), 700)
+    angle = rng.uniform(-0.5 * math.pi, 1.5 * math.pi, 700)
+    profile = edges.profile(place)
+    found = edges.arcs(np.zeros(700, dtype=np.int64), place)
+    compared = in_the_cut = 0
+    for k in range(700):
+        kappa, height = float(profile.immersion[k]), float(profile.height[k])
+        point = rotation.apply(edge_point(cutter, kappa, height, angle[k]))
+        if abs(point[2] - surface) < 2e-6:
+            continue
+        # what a smaller and a larger tool would leave as well is beyond doubt
+        left = {
+            point[2] < surface and uncut(cutter, rotation, point, side, stepover, shrunk)
+            for shrunk in (2e-6, -1e-7)
+        }
+        if len(left) > 1:
+            continue
+        before = np.flatnonzero((found.angle[k] <= angle[k]) & (found.kind[k] >= 0))
+        cuts = before.size > 0 and found.tooth[k, before[-1]] >= 0
+        assert cuts == left.pop(), (math.degrees(kappa), math.degrees(angle[k]))
+        compared, in_the_cut = compared + 1, in_the_cut + cuts
+    assert compared > 500
+    assert in_the_cut > 10
+
+
+def swept_section(engaged):
+    """Area that the edges sweep over the feed: the chip over the feed, times length and arc."""
+    cutter = engaged.cutter
+    feed = 1e-4
+    segments = inclined_edge_segments(engaged, [LinearLaw((1e9, 0.0, 0.0))] * 2, feed)
+    node, weight = np.polynomial.legendre.leggauss(12)
+    total = 0.0
+    for i in range(segments.bottom.size):
+        for x, w in zip(node, weight, strict=True):
+            share = 0.5 * (1.0 + x)
+            begin, end = (
+                arc[i, 0] + share * (arc[i, 1] - arc[i, 0])
+                for arc in (segments.entry, segments.exit)
+            )
+            kappa = segments.immersion[i] @ [1.0 - share, share]
+            out = cutter.radius - cutter.corner_radius * (1.0 - math.sin(kappa))
+            phi = begin + 0.5 * (1.0 + node) * (end - begin)
+            rise = segments.feed * math.sin(kappa) * np.sin(phi)
+            chip = (rise - segments.axial_feed * math.cos(kappa)) * 2.0 * math.pi / feed
+            mean = 0.5 * (weight @ chip) * (end - begin) * out
+            total += 0.5 * w * segments.length[i] * mean
+    return total / cutter.teeth
+
+
+@pytest.mark.parametrize(("lead", "tilt"), [(15, 0), (0, 20), (10, -15), (-8, 5)])
+@pytest.mark.parametrize(("side", "stepover"), [("slot", None), ("up", 0.4e-3), ("down", 2e-3)])
+def test_edges_of_a_ball_remove_what_lies_between_two_passes(lead, tilt, side, stepover):
+    axis = ToolAxis(math.radians(lead), math.radians(tilt))
+    found = swept_section(InclinedEngagement(BALL, axis, DEPTH, side, stepover))
+    # a ball sweeps a circle however it is inclined
+    z = DEPTH * (np.arange(200000) + 0.5) / 200000
+    width = 2.0 * np.sqrt(z * (BALL.diameter - z))
+    wanted = DEPTH * np.mean(width if stepover is None else np.minimum(width, stepover))
+    assert found == pytest.approx(wanted, rel=5e-4)
+
+
+def test_edges_of_a_tilted_end_mill_remove_a_trapezium():
+    tilt, step = math.radians(5.0), 4e-3
+    engaged = InclinedEngagement(END_MILL, ToolAxis(0.0, tilt), DEPTH, "down", step)
+    # in the section the tool is the corner between its end, which rises by tan(tilt), and its side
+    z = DEPTH * (np.arange(200000) + 0.5) / 200000
+    wide = z / math.tan(tilt) + z * math.tan(tilt)
+    wanted = DEPTH * np.mean(np.minimum(wide, step))
+    assert swept_section(engaged) == pytest.approx(wanted, rel=1e-3)
+
+
+def arcs_of(side, tilt, stepover=0.6e-3):
+    engaged = InclinedEngagement(BALL, ToolAxis(math.radians(6.0), tilt), DEPTH, side, stepover)
+    edges = InclinedEdges(engaged, 2e-4)
+    found = edges.arcs(np.zeros(80, dtype=np.int64), np.linspace(1e-5, 4.2e-3, 80))
+    return [
+        [
+            (float(row[k]), float(row[k + 1]))
+            for k in range(row.size - 1)
+            if met[k] >= 0
+        ]
+        for row, met in zip(found.angle, found.tooth, strict=True)
+    ]  # fmt: skip
+
+
+def test_up_milling_is_down_milling_in_a_mirror():
+    tilt = math.radians(14.0)
+    up, down = arcs_of("up", tilt), arcs_of("down", -tilt)
+    assert sum(map(len, up)) > 20
+    for here, there in zip(up, down, strict=True):
+        mirrored = sorted((math.pi - end, math.pi - begin) for begin, end in there)
+        assert np.allclose(here, mirrored, atol=1e-8)
+
+
+@pytest.mark.parametrize("radial_depth", [2e-3, 6e-3])
+def test_a_wall_beside_a_tool_that_leads(radial_depth):
+    # the tool is as wide across the feed as upright: the wall is where it is beside an upright one
+    engaged = InclinedEngagement(
+        END_MILL, ToolAxis(math.radians(3.0), 0.0), 0.2e-3, "up", None, radial_depth
+    )
+    y = np.array([5e-3 - radial_depth - 1e-6, 5e-3 - radial_depth + 1e-6])
+    assert np.all((engaged.beside_pass(y, np.zeros(2)) > 0.0) == [False, True])
