@@ -85,7 +85,7 @@ def _widest(
     angle = np.linspace(-0.5 * math.pi, 1.5 * math.pi, _ANGLES)
 
     def cuts(at: float, wide: float, kappa: float) -> bool:
-        _, z = engagement.places(np.full(_ANGLES, at), np.full(_ANGLES, wide), angle)
+        _, z = engagement.position(np.full(_ANGLES, at), np.full(_ANGLES, wide), angle)
         ahead = engagement.ahead(np.full(_ANGLES, kappa), angle) >= -1e-12
         return bool(np.any(ahead & (engagement.below_surface(z) >= 0.0)))
 
@@ -165,7 +165,7 @@ def _of_cut(case: Case) -> list[str]:
 def _of_laws(case: Case) -> list[str]:
     found = []
     if case.contact is not None:
-        found.append("[contact] is not computed: its share of the depth is that of an upright tool")
+        found.append("[contact] is not computed: its share counts depths along the tool axis")
     damping = case.process_damping
     if damping is not None and damping.indentation_force is not None:
         found.append(

@@ -45,7 +45,7 @@ class InclinedEdges(Edges):
         self.engagement = engagement
 
     @property
-    def teeth_are_alike(self) -> bool:
+    def all_teeth_equal(self) -> bool:
         """Whether every tooth has the arcs of the first, in what the one before it has left."""
         cutter = self.cutter
         alike = len(set(cutter.helix)) == 1 and cutter.serration is None
@@ -132,7 +132,7 @@ class _Look:
         """What an edge stands ahead, below the surface and beside the pass before."""
         engagement, profile = self._engagement, self._profile
         ahead = engagement.ahead(profile.immersion[row], angle)
-        y, z = engagement.places(profile.height[row], profile.radius[row], angle)
+        y, z = engagement.position(profile.height[row], profile.radius[row], angle)
         return ahead, engagement.below_surface(z), engagement.beside_pass(y, z)
 
     def _thinnest(self, row: Indices, ahead: Array) -> tuple[Indices, Array]:

@@ -131,7 +131,7 @@ def inclined_edge_segments(
     cutter = engagement.cutter
     edges, line, top = inclined_line(engagement, feed_per_revolution, relative_length)
     slopes = [law.slope_power.cutting for law in laws]
-    if edges.teeth_are_alike:
+    if edges.all_teeth_equal:
         segments, owners = segments_of_like_teeth(edges, line, top, slopes, relative_length)
     else:
         segments, owners = segments_of_passes(edges, line, top, slopes, relative_length)

@@ -152,8 +152,8 @@ class InclinedEngagement:
         lean = math.sqrt(max(1.0 - up * up, 0.0))
         return (self.floor + self.axial_depth + self.cutter.radius * lean) / up
 
-    def places(self, height: Array, radius: Array, angle: Array) -> tuple[Array, Array]:
-        """Place across the feed and along z, m, of points of edges at angles about the axis."""
+    def position(self, height: Array, radius: Array, angle: Array) -> tuple[Array, Array]:
+        """Position across the feed and along z, m, of points of edges at angles about the axis."""
         x, y = radius * np.sin(angle), radius * np.cos(angle)
         frame = self.frame
         return (

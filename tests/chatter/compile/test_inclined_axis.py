@@ -1,4 +1,4 @@
-"""Lead and tilt in a case: effective diameter by hand, what is refused and why, what stays exact."""
+"""Lead and tilt in a case: effective diameter by hand, what is refused and why, what is exact."""
 
 import math
 

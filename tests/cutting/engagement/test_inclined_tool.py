@@ -1,4 +1,4 @@
-"""Engagement of an inclined tool against the bodies that it has swept, and against areas by hand."""
+"""Engagement of an inclined tool against the bodies that it has swept, and areas by hand."""
 
 import math
 
