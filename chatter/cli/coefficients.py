@@ -103,13 +103,13 @@ def _print_coefficients(found: Coefficients) -> None:
     ]
     title = f"{summary['law']} law, {summary['from']} of {len(found.measurement.runs)} cuts"
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
-    if summary["holdout_error"]:
+    if summary["from"] == "mean forces" and summary["holdout_error"]:
         worst = max(summary["holdout_error"].values())
         print_line(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
     for name, sign in summary["signs"].items():
         print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     if found.waveforms is not None:
-        _print_waveforms(summary["waveforms"])
+        _print_waveforms(summary["waveforms"], summary["law"] if found.by_waveforms else "")
     if summary["oblique"] is not None:
         _print_oblique(summary["oblique"])
     if summary["not_fitted"]:
@@ -146,18 +146,24 @@ def _print_predicted(cuts: dict[str, Any]) -> None:
     )  # fmt: skip
 
 
-def _print_waveforms(summary: dict[str, Any]) -> None:
-    numbers = [
-        one for key in ("coefficients", "exponents", "runout", "helix") for one in summary[key]
-    ]
-    print_table(
-        f"{summary['law']} law, whole waveforms of {len(summary['cuts'])} cuts",
-        ["number", "value", "+-", "unit"],
-        [
-            [one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}", one["unit"]]
-            for one in numbers
-        ],
-    )
+def _print_waveforms(summary: dict[str, Any], shown: str) -> None:
+    """Print what waveforms say; `shown` is the law whose coefficients are printed already."""
+    keys = ["runout", "helix"]
+    if summary["law"] != shown:
+        keys = ["coefficients", "exponents", *keys]
+    numbers = [one for key in keys for one in summary[key]]
+    if numbers:
+        print_table(
+            f"{summary['law']} law, whole waveforms of {len(summary['cuts'])} cuts",
+            ["number", "value", "+-", "unit"],
+            [
+                [
+                    one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}",
+                    one["unit"],
+                ]
+                for one in numbers
+            ],
+        )  # fmt: skip
     for name, one in summary["resonances"].items():
         print_line(f"{name} has a resonance at {one['frequency_Hz']:.0f} Hz")
     if summary["low_pass_Hz"] is not None:
@@ -165,4 +171,13 @@ def _print_waveforms(summary: dict[str, Any]) -> None:
     for cut in summary["cuts"]:
         left = ", ".join(f"{name} {share:.0%}" for name, share in cut["left"].items())
         print_line(f"{cut['run']}: the waveforms leave {left} of the varying force")
+    of_others = [
+        abs(one["peak_to_peak_predicted_N"] / one["peak_to_peak_N"] - 1.0)
+        for channels in summary["holdout"].values()
+        for one in channels.values()
+    ]
+    if of_others:
+        print_line(
+            f"peak-to-peak forces of a cut held out are predicted to {max(of_others):.1%} or better"
+        )
     print_notes(summary["notes"])

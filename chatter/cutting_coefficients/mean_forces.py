@@ -19,9 +19,9 @@ from chatter.explain.records.description import FORCE, Channel
 _USUAL = ("Fx", "Fy", "Fz")
 #: revolutions of which a mean has a scatter
 _FEWEST_REVOLUTIONS = 4
-#: share of its value by which a mean force is uncertain at the least: gain and crosstalk of a
+#: share of its value by which a force is uncertain at the least: gain and crosstalk of a
 #: dynamometer
-_GAIN = 0.01
+GAIN = 0.01
 
 
 class MeanForce(NamedTuple):
@@ -93,7 +93,7 @@ def _mean(
     value = float(values.mean())
     scatter = float(each.std(ddof=1)) / math.sqrt(revolutions)
     return MeanForce(
-        run.name, name, direction, has_sign, value, math.hypot(scatter, _GAIN * value), revolutions
+        run.name, name, direction, has_sign, value, math.hypot(scatter, GAIN * value), revolutions
     )
 
 

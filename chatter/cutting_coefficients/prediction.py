@@ -44,16 +44,21 @@ class PredictedCut:
             found[name]["left"] = share
         return found
 
-    def _left(self) -> list[float]:
-        """Share of the varying force that is not predicted, at the best turn of the spindle."""
+    def aligned(self) -> Complex:
+        """Prediction (channels, k) with the spindle turned to fit, and as many harmonics, N."""
         count = min(self.predicted.shape[1], self.average.amplitude.shape[1])
         measured, expected = self.average.amplitude[:, 1:count], self.predicted[:, 1:count]
         angle = 2.0 * math.pi * np.arange(_TURNS) / _TURNS
-        turned = np.exp(1j * np.outer(angle, np.arange(1, count)))
-        match = turned @ np.sum(np.conj(measured) * expected, axis=0)
-        differs = measured - expected * turned[np.argmax(match.real)]
+        turned = np.exp(1j * np.outer(angle, np.arange(count)))
+        match = turned[:, 1:] @ np.sum(np.conj(measured) * expected, axis=0)
+        return self.predicted[:, :count] * turned[np.argmax(match.real)]
+
+    def _left(self) -> list[float]:
+        """Share of the varying force that is not predicted, at the best turn of the spindle."""
+        shown = self.aligned()[:, 1:]
+        measured = self.average.amplitude[:, 1 : shown.shape[1] + 1]
         size = np.linalg.norm(measured, axis=1)
-        return [float(one) for one in np.linalg.norm(differs, axis=1) / size]
+        return [float(one) for one in np.linalg.norm(measured - shown, axis=1) / size]
 
 
 def predicted_means(

@@ -159,6 +159,29 @@ class Coefficients:
         return self.kept.law.section(self.kept.values, self.kept.exponents)
 
     @property
+    def origin(self) -> str:
+        """What the coefficients are from."""
+        return "waveforms" if self.by_waveforms else "mean forces"
+
+    @property
+    def answer_law(self) -> FittedLaw:
+        """Law of the answer."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.as_fitted_law()
+        return self.kept
+
+    @property
+    def law_name(self) -> str:
+        """Law of the answer as the report calls it."""
+        return self.answer_law.law.name
+
+    def offset_of(self, mean: MeanForce) -> float:
+        """Offset that the waveforms show in a mean force, where the answer is from them, N."""
+        if self.waveforms is not None and self.by_waveforms:
+            return self.waveforms.offset(mean.run, mean.channel)
+        return 0.0
+
+    @property
     def has_material(self) -> bool:
         """Whether the law cuts: the tangential coefficient is above zero."""
         return self.by_waveforms or float(self.kept.values[0]) > 0.0
@@ -253,6 +276,11 @@ class Coefficients:
             notes.append("no [material] section is written: the tangential force does not cut")
         if self.holdout is None:
             notes.append("too few cuts to judge the law by one held out")
+        if len({run.of(self.measurement.case).cut for run in self.measurement.runs}) == 1:
+            notes.append(
+                "mean forces of one cut alone do not tell the edge forces: the coefficients hold "
+                "them, and the deviations are too small"
+            )
         return notes
 
     def _notes_of_waveforms(self) -> list[str]:
@@ -396,8 +424,7 @@ class Coefficients:
             )
         case = self.measurement.case
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
-        kind = "waveforms" if self.by_waveforms else "mean forces"
-        source = f"{kind} of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
+        source = f"{self.origin} of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
         validity = f"feeds of {1e3 * min(feeds):.4g} to {1e3 * max(feeds):.4g} mm a tooth"
         return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 
@@ -417,6 +444,6 @@ class Coefficients:
             if self.waveforms.has_material:
                 texts["material-waveforms.toml"] = self.waveforms.material_toml()
             pictures["waveforms.png"] = presentation("plots.force_waveforms").plot_waveforms(
-                self.waveforms
+                self.waveforms, self.predicted_cuts
             )
         return write_results(folder, texts, pictures)

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from chatter.cutting_coefficients.mean_forces import GAIN
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage
 from chatter.cutting_coefficients.waveform_model import Complex, WaveformModel
 from chatter.description.arrays import Array
@@ -49,10 +50,16 @@ class WaveformFit:
         return self.values[: len(self.model.law.keys)]
 
     @property
+    def coefficient_covariance(self) -> Array:
+        """Covariance of the coefficients, SI: none is known better than a dynamometer's gain."""
+        first = self.parameters.size
+        own = slice(first, first + self.coefficients.size)
+        return self.covariance[own, own] + np.diag((GAIN * self.coefficients) ** 2)
+
+    @property
     def deviations(self) -> Array:
         """Standard deviations of the coefficients, SI."""
-        first = self.parameters.size
-        return self._deviations[first : first + self.coefficients.size]
+        return np.sqrt(np.maximum(np.diag(self.coefficient_covariance), 0.0))
 
     @property
     def parameter_deviations(self) -> Array:

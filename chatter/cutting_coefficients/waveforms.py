@@ -11,6 +11,7 @@ import numpy as np
 import tomlkit
 
 from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import REFERENCE_CHIP
 from chatter.cutting_coefficients.mean_forces import force_channels
 from chatter.cutting_coefficients.prediction import PredictedCut, compared
@@ -76,9 +77,24 @@ class Waveforms:
     def linear_fit(self) -> tuple[Array, Array]:
         """Coefficients (6,) of the linear law with edge forces, and their covariance, SI."""
         fit = next(one for one in self.fits if one.model.law.name == "linear")
-        first = fit.parameters.size
-        own = slice(first, first + fit.coefficients.size)
-        return fit.coefficients, fit.covariance[own, own]
+        return fit.coefficients, fit.coefficient_covariance
+
+    def as_fitted_law(self) -> FittedLaw:
+        """Best law of a case file as one that gives mean forces, without offsets."""
+        fit = self.of_case
+        return FittedLaw(
+            fit.model.law,
+            fit.coefficients,
+            fit.model.split(fit.parameters, len(fit.averages))["exponent"],
+            fit.coefficient_covariance,
+            dict(fit.model.signs),
+            np.empty(0),
+            0.0,
+        )
+
+    def offset(self, run: str, channel: str) -> float:
+        """Offset of a channel in a cut, as the waveforms show it, N."""
+        return _offsets(self.of_case).get(run, {}).get(channel, 0.0)
 
     def answer(self) -> dict[str, Any]:
         """Law of a case file with its coefficients and exponents, as the mean forces give them."""

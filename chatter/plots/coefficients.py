@@ -23,9 +23,7 @@ def plot_coefficients(found: Coefficients) -> Figure:
     """Draw the mean forces of every channel over the feed per tooth, and the law that is kept."""
     names = channels_of(found.means)
     figure = style.new_figure(3.6 * max(len(names), 2), 3.9)
-    figure.suptitle(
-        f"{found.measurement.title}: {found.kept.law.name} law", fontsize=11.0, x=0.01, ha="left"
-    )
+    figure.suptitle(_title(found), fontsize=11.0, x=0.01, ha="left")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
         _draw_channel(axes, found, name)
     return figure
@@ -35,22 +33,24 @@ def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
     own = [one for one in found.means if one.channel == name]
     cases = {run.name: run.of(found.measurement.case) for run in found.measurement.runs}
     feeds = np.array([1e3 * cases[one.run].cut.feed_per_tooth for one in own])
+    values = [one.value - found.offset_of(one) for one in own]
     axes.errorbar(
-        feeds, [one.value for one in own], yerr=[2.0 * one.deviation for one in own], fmt="o",
+        feeds, values, yerr=[2.0 * one.deviation for one in own], fmt="o",
         color=style.BLUE, capsize=3.0, label="measured, +- 2 standard deviations",
     )  # fmt: skip
     if differ_by_feed_alone(list(cases.values())):
         line = np.linspace(0.5 * feeds.min(), 1.1 * feeds.max(), _POINTS)
         any_case = next(iter(cases.values()))
         for fit, colour, label in _shown(found):
-            values = [
+            forces = [
                 fit.mean_forces_of(own[:1], any_case.patch({"cut.feed_per_tooth": 1e-3 * feed}))[0]
                 for feed in line
             ]
-            axes.plot(line, values, color=colour, label=label)
+            axes.plot(line, forces, color=colour, label=label)
     else:
-        chosen = [one.channel == name for one in found.means]
-        axes.plot(feeds, found.kept.predicted[chosen], "x", color=style.RED, label="fitted")
+        law = found.answer_law
+        fitted = [law.mean_forces_of([one], cases[one.run])[0] for one in own]
+        axes.plot(feeds, fitted, "x", color=style.RED, label="fitted")
     axes.set_title(name, loc="left")
     axes.set_xlabel("feed per tooth [mm]")
     axes.set_ylabel("mean force [N]")
@@ -58,8 +58,15 @@ def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
     axes.legend(fontsize=8.0)
 
 
+def _title(found: Coefficients) -> str:
+    beside = ", whose offsets are taken off" if found.by_waveforms else ""
+    return f"{found.measurement.title}: {found.law_name} law, by {found.origin}{beside}"
+
+
 def _shown(found: Coefficients):
-    """Laws that are drawn: the one kept, and the linear one beside it."""
+    """Laws that are drawn: that of the answer; of mean forces the linear one and others beside."""
+    if found.by_waveforms:
+        return [(found.answer_law, style.RED, found.law_name)]
     shown = [(found.kept, style.RED, found.kept.law.name)]
     linear = next((one for one in found.fits if one.law.name == "linear"), None)
     if linear is not None and linear is not found.kept:

@@ -125,6 +125,8 @@ def test_a_file_without_headings_and_its_case(tmp_path, case):
     )  # fmt: skip
     assert shown.exit_code == 0, shown.stderr
     assert (tmp_path / "out" / "material.toml").is_file()
+    # one feed: what is not told is said
+    assert "do not tell the edge forces" in " ".join(shown.stderr.split())
 
 
 @pytest.mark.parametrize(

@@ -124,8 +124,7 @@ def test_coefficients_and_runout_come_back_under_offset_and_drift(tmp_path):
     assert found["linear_law_holds"]
     for name, (value, deviation) in numbers(found["coefficients"]).items():
         assert value == pytest.approx(TRUE[name], rel=0.04), name
-        # three standard deviations, and 1 % for the discs of the sum
-        assert abs(value - TRUE[name]) < 3.0 * deviation + 0.01 * TRUE[name], name
+        assert abs(value - TRUE[name]) < 3.0 * deviation, name
         assert deviation < 0.05 * TRUE[name], name
     along, across = (value for value, _ in numbers(found["runout"]).values())
     assert math.hypot(along, across) == pytest.approx(RUNOUT, rel=0.03)
@@ -207,8 +206,7 @@ def test_intervals_hold_the_truth_behind_three_resonances_and_a_low_pass(tmp_pat
         found = summary["waveforms"]["resonances"][f"F{axis}"]["frequency_Hz"]
         assert found == pytest.approx(frequency, rel=0.02)
     for name, (value, deviation) in numbers(summary["coefficients"]).items():
-        # three standard deviations, and 1 % for the discs of the sum
-        assert abs(value - TRUE[name]) < 3.0 * deviation + 0.01 * TRUE[name], name
+        assert abs(value - TRUE[name]) < 3.0 * deviation, name
         assert deviation < 0.1 * TRUE[name], name
 
 
