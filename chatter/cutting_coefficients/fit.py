@@ -72,8 +72,8 @@ def fitted_law(
 
 def _implausible(fit: FittedLaw) -> int:
     """How many of the coefficients are below zero, or radial ones above the tangential one."""
-    tangential, radial, _ = fit.values[:3]
-    return int(np.sum(fit.values[:3] < 0.0)) + int(radial > tangential)
+    cutting = fit.values[fit.law.cutting]
+    return int(np.sum(cutting < 0.0)) + int(cutting[1] > cutting[0])
 
 
 def _is_unsigned(means: Sequence[MeanForce], channel: str) -> bool:

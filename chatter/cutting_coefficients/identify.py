@@ -10,7 +10,7 @@ import numpy as np
 
 from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
 from chatter.cutting_coefficients.in_the_cut import in_the_cut
-from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
+from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw, of_directions
 from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
 from chatter.cutting_coefficients.records_of_cuts import read_records
 from chatter.cutting_coefficients.result import Coefficients
@@ -68,7 +68,8 @@ def coefficients(
     records, apart = _parted(records.with_runs([one.run for one in given]), hold_out)
     means = mean_forces(records)
     cases = {run.name: run.of(records.case) for run in records.runs}
-    fits = _fitted(LAWS, means, cases)
+    directions = [one.direction for one in means]
+    fits = _fitted(of_directions(LAWS, directions), means, cases)
     if not fits:
         raise InputError(
             f"{records.folder}: {len(means)} mean forces of {len(cases)} cuts determine no force "
@@ -76,7 +77,8 @@ def coefficients(
         )
     errors = [_holdout(fit, means, cases) for fit in fits]
     kept = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
-    own = min(_fitted(BY_DIRECTION, means, cases), key=lambda one: one.chi_square, default=None)
+    by_direction = _fitted(of_directions(BY_DIRECTION, directions), means, cases)
+    own = min(by_direction, key=lambda one: one.chi_square, default=None)
     beside = None if own is None else _holdout(own, means, cases)
     return Coefficients(
         records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside, apart, zeroed

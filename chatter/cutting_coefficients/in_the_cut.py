@@ -10,6 +10,7 @@ import numpy as np
 
 from chatter.cutting_coefficients.mean_forces import force_channels
 from chatter.description.arrays import Array
+from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.description import AIR
 from chatter.explain.records.stages import stages_of
@@ -29,6 +30,7 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     """Return the settled cut of a run that begins or ends in the air; else the run as it is.
 
     The offset is the mean force in the air; where there is air on both sides it drifts on a line.
+    InputError where a force is blank somewhere, or none varies.
     """
     names = list(force_channels(measurement, run))
     time = run.signals.get("time")
@@ -36,6 +38,13 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
         return RunInCut(run, is_zeroed=False)
     case = run.of(measurement.case)
     forces = np.array([run.signals[name] for name in names])
+    where = measurement.folder / run.name
+    for name, values in zip(names, forces, strict=True):
+        blank = int(np.sum(~np.isfinite(values)))
+        if blank:
+            raise InputError(f"{where}: {name}: {blank} samples are blank or no numbers")
+    if not np.any(np.ptp(forces, axis=1) > 0.0):
+        raise InputError(f"{where}: no force varies over the record: {', '.join(names)}")
     stages = stages_of(case, time, forces, AIR)
     if stages.entry == 0 and stages.leave == time.size:
         return RunInCut(run, is_zeroed=False)

@@ -8,10 +8,11 @@ that tools with corners, unequal teeth and arcs of any kind are as good.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from chatter.compile.cutter import cutter_of
 from chatter.description.arrays import Array
@@ -24,6 +25,8 @@ from cutting.force.linear import LinearLaw
 #: chip thickness to which the coefficients of an exponential law belong, m
 REFERENCE_CHIP = 1e-4
 _DIRECTIONS = "tra"
+#: component of a direction that counts
+_SEEN = 1e-6
 #: mean forces kept
 _KEPT = 4096
 _CUTTING, _EDGE = ("Ktc", "Krc", "Kac"), ("Kte", "Kre", "Kae")
@@ -49,6 +52,11 @@ class TriedLaw:
     law: str
     keys: tuple[str, ...]
     exponents: tuple[int, int, int] = (-1, -1, -1)
+
+    @property
+    def cutting(self) -> list[int]:
+        """Places of the cutting coefficients among the keys, tangential first."""
+        return [place for place, key in enumerate(self.keys) if key[2] == "c"]
 
     @property
     def exponent_count(self) -> int:
@@ -87,6 +95,15 @@ BY_DIRECTION = (
     TriedLaw("power, line, power", "", (*_CUTTING, "Kre"), (0, -1, 1)),
     TriedLaw("a power for each", "", _CUTTING, (0, 1, 2)),
 )
+
+
+def of_directions(laws: Sequence[TriedLaw], directions: ArrayLike) -> list[TriedLaw]:
+    """Laws for channels of some directions (n, 3): without axial forces where none is seen."""
+    if np.any(np.abs(np.asarray(directions)[:, 2]) > _SEEN):
+        return list(laws)
+    # an exponent of the axial force alone has nothing to show itself by
+    kept = [law for law in laws if law.exponents[2] in (-1, law.exponents[0])]
+    return [replace(law, keys=tuple(key for key in law.keys if key[1] != "a")) for law in kept]
 
 
 def unit_forces(law: TriedLaw, case: Case, exponents: Sequence[float]) -> Array:

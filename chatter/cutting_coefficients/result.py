@@ -30,6 +30,8 @@ from chatter.io.result_files import as_json, finite_or_none, short_repr, write_r
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+#: coefficients of the linear law with edge forces in all three directions
+_LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
 _DIRECTIONS = ("tangential", "radial", "axial")
@@ -112,7 +114,7 @@ class Coefficients:
                 f"{where}: a normal rake of {math.degrees(rake):g} deg; it lies between -45 and 45"
             )
         linear = self._linear_fit()
-        if linear is None or linear[0][0] <= 0.0:
+        if linear is None or linear[0].size < _LINEAR_KEYS or linear[0][0] <= 0.0:
             raise InputError(
                 f"{where}: the oblique law follows from the linear one, which the records do not "
                 "determine; forces along x, y and z of two feeds do"
@@ -200,9 +202,9 @@ class Coefficients:
     @property
     def _line_fits_means(self) -> bool | None:
         linear = next((one for one in self.fits if one.law.name == "linear"), None)
-        freedom = len(self.means) - 6
-        if linear is None or freedom < 1:
+        if linear is None or len(self.means) <= linear.law.parameters:
             return None
+        freedom = len(self.means) - linear.law.parameters
         return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > _HOLDS)
 
     def summary(self) -> dict[str, Any]:
@@ -266,7 +268,7 @@ class Coefficients:
                 text += f"; least straight over the cuts is {worst[0]}, r2 {worst[1]:.2f}"
             notes.append(text)
             notes += self._bent_directions()
-        if any(value < 0.0 for value in self.kept.values[:3]):
+        if np.any(self.kept.values[self.kept.law.cutting] < 0.0):
             notes.append(
                 "a cutting coefficient is below zero: a direction or a sense may be wrong; "
                 "measurement.toml tells both by [channels.NAME] with on, direction and "

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
+from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw, of_directions
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage
 from chatter.cutting_coefficients.waveform_fit import Problem, WaveformFit, fitted, residual_weights
 from chatter.cutting_coefficients.waveform_model import WaveformModel
@@ -26,8 +26,8 @@ _FIRST_DAMPING = 0.1
 _FREQUENCIES = 24
 #: directions whose powers are fitted together
 _SEVERAL = 2
-#: the linear law with edge forces, of which the search starts
-_LINEAR = next(law for law in LAWS if law.name == "linear")
+#: the law of which the search starts: with edge forces
+_FIRST_LAW = "linear"
 
 
 def waveform_fits(
@@ -57,23 +57,28 @@ def waveform_fits(
     # from here on what a harmonic is left to be wrong by says how much it counts
     best = _weighted(best)
     best = _best([best, _without_offsets(best)])
-    fits = [best, *(_with_law(best, law) for law in LAWS if law is not _LINEAR)]
+    others = [law for law in _laws(LAWS, averages) if law.name != _FIRST_LAW]
+    fits = [best, *(_with_law(best, law) for law in others)]
     fits += _by_direction(best)
     effective = _effective(fits)
     return sorted(fits, key=lambda one: one.criterion(effective))
 
 
+def _laws(laws: Sequence[TriedLaw], averages: Sequence[RevolutionAverage]) -> list[TriedLaw]:
+    """Laws that the channels can tell."""
+    return of_directions(laws, np.concatenate([one.directions for one in averages]))
+
+
 def _by_direction(linear: WaveformFit) -> list[WaveformFit]:
     """Fits with a power in one direction, and in all those where one is better than a line."""
-    single = [_with_law(linear, law) for law in BY_DIRECTION if law.exponent_count == 1]
+    laws = _laws(BY_DIRECTION, linear.averages)
+    single = [_with_law(linear, law) for law in laws if law.exponent_count == 1]
     better = [one for one in single if _best([linear, one]) is one]
     bent = {number for one in better for number in range(3) if one.model.law.exponents[number] >= 0}
     if len(bent) < _SEVERAL:
         return single
     together = next(
-        law
-        for law in BY_DIRECTION
-        if bent == {number for number in range(3) if law.exponents[number] >= 0}
+        law for law in laws if bent == {number for number in range(3) if law.exponents[number] >= 0}
     )
     return [*single, _with_law(linear, together)]
 
@@ -111,8 +116,9 @@ def refitted(fit: WaveformFit, averages: Sequence[RevolutionAverage]) -> Wavefor
 def _first_fit(averages: Sequence[RevolutionAverage], unsigned: Sequence[str]) -> WaveformFit:
     """Linear law without runout, its start angles and the senses of the channels looked for."""
     teeth = averages[0].case.tool.teeth
+    linear = next(law for law in _laws(LAWS, averages) if law.name == _FIRST_LAW)
     tried = [
-        _started(WaveformModel(_LINEAR, teeth, dict(zip(unsigned, choice, strict=True))), averages)
+        _started(WaveformModel(linear, teeth, dict(zip(unsigned, choice, strict=True))), averages)
         for choice in itertools.product((1.0, -1.0), repeat=len(unsigned))
     ]
     _, _, model, start = min(tried, key=lambda one: one[:2])
@@ -130,7 +136,8 @@ def _started(
     for start in starts:
         values, left = problem.solved(np.array([start]))
         coefficients = values[: len(model.law.keys)]
-        wrong = int(np.sum(coefficients[:3] < 0.0)) + int(coefficients[1] > coefficients[0])
+        cutting = coefficients[model.law.cutting]
+        wrong = int(np.sum(cutting < 0.0)) + int(cutting[1] > cutting[0])
         candidates.append((wrong * int(bool(model.signs)), float(left @ left), start, coefficients))
     wrong, power, start, coefficients = min(candidates, key=lambda one: one[:2])
     found = [

@@ -151,3 +151,33 @@ def test_a_law_that_does_not_cut_is_not_kept(tmp_path, case):
     }  # fmt: skip
     with pytest.raises(InputError, match="no row is kept"):
         found.keep_in(tmp_path / "ours.toml", "steel")
+
+
+def test_forces_along_x_and_y_alone_tell_what_they_can(tmp_path, case):
+    feeds = np.repeat([0.03, 0.06, 0.09, 0.12], RATE // 2)
+    file = write(tmp_path / "steps.csv", forces_of(feeds), **{"feed_per_tooth [mm]": feeds})
+    table = np.loadtxt(file, delimiter=",", skiprows=1)[:, [0, 1, 2, 4]]
+    heading = "time [s],Fx [N],Fy [N],feed_per_tooth [mm]"
+    np.savetxt(file, table, delimiter=",", comments="", header=heading)
+    found = chatter.coefficients(file, case)
+    assert set(values_of(found)) == {"Ktc", "Krc", "Kte", "Kre"}
+    assert_true(found)
+    with pytest.raises(InputError, match="forces along x, y and z"):
+        found.with_rake(0.1)
+    whole = found.with_waveforms().summary()
+    assert {one["name"] for one in whole["coefficients"]} == {"Ktc", "Krc", "Kte", "Kre"}
+    (tmp_path / "whole.toml").write_text(case.read_text() + found.material_toml())
+    assert chatter.load(tmp_path / "whole.toml").get("material.Ktc") > 0.0
+
+
+@pytest.mark.parametrize(
+    ("value", "told"), [(np.nan, "Fy: 20 samples are blank"), (1.0, "no force varies")]
+)
+def test_records_that_hold_no_cut_are_refused(tmp_path, case, value, told):
+    forces = forces_of(np.full(2000, 0.08))
+    if np.isnan(value):
+        forces[100:120, 1] = value
+    else:
+        forces[:] = value
+    with pytest.raises(InputError, match=told):
+        chatter.coefficients(write(tmp_path / "cut.csv", forces), case)
