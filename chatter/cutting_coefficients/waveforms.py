@@ -123,6 +123,17 @@ class Waveforms:
             for share in _left(average, residual)
         )
 
+    def worst_peaks(self) -> dict[str, float]:
+        """Worst error of a peak-to-peak force of cuts held out, between other feeds and beyond."""
+        feeds = [one.average.case.cut.feed_per_tooth for one in self.holdout]
+        found: dict[str, float] = {}
+        for one, feed in zip(self.holdout, feeds, strict=True):
+            place = "between" if min(feeds) < feed < max(feeds) else "beyond"
+            for channel in one.errors().values():
+                ratio = channel["peak_to_peak_predicted_N"] / channel["peak_to_peak_N"]
+                found[place] = max(found.get(place, 0.0), abs(ratio - 1.0))
+        return found
+
     @property
     def tool_is_rigid(self) -> bool:
         """Whether a rigid tool and the dynamometer explain the varying force."""
