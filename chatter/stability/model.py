@@ -359,7 +359,7 @@ def _no_limit(case: Case, cutter: Cutter) -> str:
         return (
             f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm no "
             "edge of the inclined tool reaches the work, or the modes move without changing the "
-            "chip; there is no stability limit"
+            "chip; there is no stability limit" + _hint_of_stepover(case)
         )
     if not cutter.is_cylindrical:
         return (

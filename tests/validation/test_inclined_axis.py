@@ -162,6 +162,45 @@ def test_three_methods_agree_on_the_multiplier(lead, tilt):
     assert found[2] == pytest.approx(found[0], rel=3e-3)
 
 
+BULL_NOSE = {"tool.kind": "bull nose", "tool.corner_radius": "1 mm", "cut.stepover": "2 mm"}
+END_MILL = {"tool.kind": "end mill", "cut.stepover": "2 mm"}
+SIZE_EFFECT = {"material.law": "exponential", "material.h0": "0.1 mm", "material.exponent": 0.7}
+
+
+@pytest.mark.parametrize("changed", [BULL_NOSE, END_MILL, SIZE_EFFECT])
+def test_other_tools_and_laws_by_two_methods(changed):
+    case = case_of(3, 2, "up", 0.6e-3, structure={"mode": MODES})
+    sharp = case.patch({f"material.{key}": 0.0 for key in ("Kte", "Kre", "Kae")})
+    model = milling_model(sharp.patch(changed))
+    speed, depth = np.array([8000.0 * math.pi / 30.0]), np.array([0.15e-3])
+    found = [
+        METHODS[name].radius(model, speed, depth, None, no_progress)
+        for name in ("collocation", "time-domain")
+    ]
+    # a size effect is not quite linear at the vibration that is followed
+    assert found[1] == pytest.approx(found[0], rel=6e-3)
+
+
+@pytest.mark.parametrize(
+    ("tool", "lead", "tilt", "radius"),
+    [
+        ({"kind": "ball"}, 12.0, 0.0, 5e-3),
+        ({"kind": "ball"}, 12.0, -17.0, 5e-3),
+        ({"kind": "bull nose", "corner_radius": "2 mm"}, 6.0, 0.0, 2e-3),
+        # about the axis, in the direction of the feed: (R - r + r sin t)/sin t
+        (
+            {"kind": "bull nose", "corner_radius": "2 mm"}, 0.0, 6.0,
+            2e-3 + 3e-3 / math.sin(math.radians(6.0)),
+        ),
+    ],
+)  # fmt: skip
+def test_floor_has_the_feed_marks_of_its_lowest_point(tool, lead, tilt, radius):
+    case = case_of(lead, tilt, "up", 1e-3, simulation={"revolutions": 40})
+    case = case.patch({f"tool.{key}": value for key, value in tool.items()})
+    floor = chatter.simulate(case.patch({"cut.feed_per_tooth": "0.2 mm"})).finish.floor
+    assert np.ptp(floor.profile.height) == pytest.approx(0.2e-3**2 / (8.0 * radius), rel=0.05)
+
+
 def test_limit_of_a_slot_by_collocation_and_simulation():
     case = case_of(15, 0, structure={"mode": MODES})
     sharp = case.patch({f"material.{key}": 0.0 for key in ("Kte", "Kre", "Kae")})
