@@ -12,6 +12,8 @@ from chatter.explain.measurement import Measurement
 
 #: directions within a pitch, and offset, m, from which a runout is sought where teeth are not told
 _DIRECTIONS, _FIRST_OFFSET = 3, 5e-6
+#: the same as a share of the feed per tooth: where one tooth hardly cuts is another minimum
+_OFFSET_OF_FEED = 0.25
 
 
 class Runout(Effect):
@@ -40,8 +42,11 @@ class Runout(Effect):
             return [{}]
         pitch = 2.0 * math.pi / measurement.case.tool.teeth
         angles = pitch * np.arange(_DIRECTIONS) / _DIRECTIONS
+        feeds = [run.of(measurement.case).cut.feed_per_tooth for run in measurement.runs]
+        offsets = (_FIRST_OFFSET, _OFFSET_OF_FEED * float(np.median(feeds)))
         return [
-            {"across": _FIRST_OFFSET * math.cos(angle), "along": _FIRST_OFFSET * math.sin(angle)}
+            {"across": offset * math.cos(angle), "along": offset * math.sin(angle)}
+            for offset in offsets
             for angle in angles
         ]
 

@@ -94,7 +94,7 @@ def is_at_noise(problem: Problem, found: Fit) -> bool:
 
 def search(measurement: Measurement, predictions: Predictions, progress: Progress) -> Search:
     """Refit the nuisance parameters, then add effects as long as holdout runs gain by them."""
-    kind, split = predictions.kind, split_runs(measurement.runs)
+    kind, split = predictions.kind, split_runs(measurement)
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     problem = Problem(measurement, predictions, noise)
     progress("refitting the nuisance parameters", 0.0)
@@ -143,7 +143,7 @@ def _to_all_runs(path: Path, split: Split, progress: Progress) -> tuple[Path, Sp
     if stages:
         measurement = problem.kind.reweighted(measurement, problem.case(now.by_name))
     if measurement is not problem.measurement:
-        split = split_runs(measurement.runs)
+        split = split_runs(measurement)
         problem = replace(problem, measurement=measurement)
         now = problem.fit(split.fitted, now.by_name)
         path = Path(stages, problem, now)

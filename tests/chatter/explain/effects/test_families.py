@@ -1,6 +1,7 @@
 """Members of families put their numbers into the case; what is not determined is not reported."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -132,6 +133,24 @@ def test_effects_are_put_in_one_after_the_other():
     modes = problem.case(values).structure.mode
     assert [one.frequency_slope for one in modes] == [1e-5, 1e-5, 0.0]
     assert modes[2].frequency == 300.0
+
+
+def test_runout_is_sought_from_little_and_from_where_one_tooth_hardly_cuts():
+    """5 µm, and a quarter of the median feed per tooth, 40 µm, in directions of one pitch."""
+    runs = [
+        replace(
+            run, overrides={"cut.feed_per_tooth": feed}, record=SimpleNamespace(knows_tooth=False)
+        )
+        for run, feed in zip(cuts().runs, ("20 um", "40 um", "200 um"), strict=False)
+    ]
+    starts = Runout().starts(cuts().with_runs(runs))
+    offsets = [np.hypot(one["across"], one["along"]) for one in starts]
+    assert offsets == pytest.approx([5e-6] * 3 + [10e-6] * 3)
+    angles = [np.degrees(np.arctan2(one["along"], one["across"])) for one in starts]
+    pitch = 360.0 / CASE.tool.teeth
+    assert angles == pytest.approx([0.0, pitch / 3.0, 2.0 * pitch / 3.0] * 2)
+    # where the tooth is known no start is needed but none at all
+    assert Runout().starts(cuts()) == [{}]
 
 
 def test_two_teeth_show_the_difference_of_their_radii_alone():

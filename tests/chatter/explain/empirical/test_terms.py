@@ -100,7 +100,7 @@ def records(amplitude):
 
 def found_in(measurement):
     kind = Milling()
-    split = split_runs(measurement.runs)
+    split = split_runs(measurement)
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     problem = Problem(measurement, Predictions(kind), noise)
     problem = problem.with_noise_beside({})

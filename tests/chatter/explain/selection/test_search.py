@@ -76,7 +76,7 @@ def problem_of(measurement):
     """Problem of a measurement, and its split into fitted and holdout runs."""
     kind = Sums()
     noise = {run.name: kind.known_noise(run) for run in measurement.runs}
-    return Problem(measurement, Predictions(kind), noise), split_runs(measurement.runs)
+    return Problem(measurement, Predictions(kind), noise), split_runs(measurement)
 
 
 def found_in(measurement):
@@ -102,7 +102,7 @@ def test_effects_that_only_pay_together_are_found():
 
 def test_a_joint_step_promises_what_linear_models_give():
     measurement = measured(opposite, (1.0, 1.0, 0.0))
-    kind, split = Sums(), split_runs(measurement.runs)
+    kind, split = Sums(), split_runs(measurement)
     noise = {run.name: kind.known_noise(run) for run in measurement.runs}
     problem = Problem(measurement, Predictions(kind), noise)
     now = problem.fit(split.fitted, {})
@@ -210,3 +210,41 @@ def test_a_stage_from_beside_an_effect_that_was_dropped_is_made_anew():
 )
 def test_most_runs_gain_where_chance_would_not_make_them(gains, most):
     assert gain_in_most(gains) is most
+
+
+def series(*feeds, **others):
+    """Runs named by their feeds, µm, and what else is different in them."""
+    case = loads(
+        'title = "a series"\n[cut]\nmode = "slot"\nspindle_speed = "6000 rpm"\n'
+        'feed_per_tooth = "0.1 mm"\naxial_depth = "3 mm"'
+    )
+    runs = []
+    for number, feed in enumerate(feeds):
+        own = {f"cut.{key}": values[number] for key, values in others.items()}
+        overrides = {"cut.feed_per_tooth": f"{feed} um", **own}
+        runs.append(Run(str(feed), overrides, {"time": np.zeros(2)}))
+    return Measurement("milling", "series", None, case, tuple(runs))
+
+
+def held_out(measurement):
+    return [run.name for run in split_runs(measurement).holdout]
+
+
+def test_feeds_between_others_are_held_out_in_whatever_order_they_stand():
+    assert held_out(series(25, 75, 125)) == ["75"]
+    assert held_out(series(125, 25, 75)) == ["75"]
+    # as text 100 is the lowest
+    assert held_out(series(100, 25, 50)) == ["50"]
+    assert held_out(series(25, 50, 75, 100, 125)) == ["50"]
+    assert held_out(series(125, 100, 75, 50, 25, 150)) == ["125", "50"]
+
+
+def test_runs_in_which_more_than_one_condition_varies_are_held_out_by_their_order():
+    depths = ["1 mm", "2 mm", "3 mm"]
+    assert held_out(series(25, 75, 125, axial_depth=depths)) == ["125"]
+    # the same everywhere is no condition that varies
+    assert held_out(series(25, 75, 125, axial_depth=["2 mm"] * 3)) == ["75"]
+    # nor are the speeds of one setting, as records tell them
+    speeds = ["5999.8 rpm", "5999.7 rpm", "5999.6 rpm"]
+    assert held_out(series(25, 75, 125, spindle_speed=speeds)) == ["75"]
+    assert held_out(series(25, 25, 75, 125)) == ["75"]
