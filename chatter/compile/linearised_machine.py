@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,31 @@ _MATTERS = 0.01
 _LOWEST = 1.0
 #: misfit of the modes, over the largest receptance, of which the user should know
 _WORTH_TELLING = 0.02
+#: of the lowest natural frequency, from where on resonances are; below, loops hold the axes
+_RESONANT_FROM = 0.7
+
+
+class FittedModes(NamedTuple):
+    """Real modes, and by how much they miss the receptance, over its largest value."""
+
+    modes: tuple[Mode, ...]
+    lowest: float  # frequency from which on resonances are, Hz
+    misfit: float  # from there on
+    whole_misfit: float  # at all lines
+
+    @property
+    def notes(self) -> list[str]:
+        """What of it the user should know."""
+        if max(self.misfit, self.whole_misfit) <= _WORTH_TELLING:
+            return []
+        below = ""
+        if self.whole_misfit > _WORTH_TELLING:
+            below = f"; with the motion of the axes below, {self.whole_misfit:.1%}"
+        return [
+            f"methods that need modes take real ones, which miss the receptance above "
+            f"{self.lowest:.3g} Hz, where the structure resonates, by up to {self.misfit:.1%} of "
+            f"its largest value{below}"
+        ]
 
 
 @dataclass(frozen=True)
@@ -85,17 +111,20 @@ class LinearisedMachine:
         return tuple(mode for mode in modes if 1.0 / mode.stiffness > least)
 
     @cached_property
-    def _fitted(self) -> tuple[tuple[Mode, ...], float]:
+    def _fitted(self) -> FittedModes:
         highest = _ABOVE * max(mode.frequency for mode in self._guess)
         lines = lines_around(self._guess, _LOWEST, highest)
         values = tool_receptance(self.case, self.cut, lines, self.excluded)
         modes = real_modes(lines, values, self._guess)
-        return modes, largest_misfit(modes, lines, values)
+        lowest = _RESONANT_FROM * min(mode.frequency for mode in self._guess)
+        above = lines >= lowest
+        resonant = largest_misfit(modes, lines[above], values[above])
+        return FittedModes(modes, lowest, resonant, largest_misfit(modes, lines, values))
 
     @property
     def modes(self) -> tuple[Mode, ...]:
         """Real modes fitted to the receptance."""
-        return self._fitted[0]
+        return self._fitted.modes
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -112,12 +141,7 @@ class LinearisedMachine:
                 else f"are linearised at vibration of {amplitude * 1e6:g} um along their axes"
             )
             notes.append(f"frictions of axes that move slide, those of others {others}")
-        misfit = self._fitted[1]
-        if misfit > _WORTH_TELLING:
-            notes.append(
-                f"methods that need modes take real ones, which miss the receptance by up to "
-                f"{misfit:.1%} of its largest value"
-            )
+        notes += self._fitted.notes
         return tuple(notes)
 
     @property
