@@ -9,6 +9,7 @@ The torque of a step is that at its beginning.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -28,8 +29,7 @@ class CurrentPlant(NamedTuple):
 
     def sampled(self, step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return transition (2, 2) and entry (2,) over a step, s, of held input."""
-        over = exact_step(self.matrix, self.entry[:, None], step)
-        return over.transition, over.constant[:, 0]
+        return _sampled(tuple(self.matrix.ravel().tolist()), tuple(self.entry.tolist()), step)
 
     def response(self, frequencies: ArrayLike, step: float) -> NDArray[np.complex128]:
         """Return both states per input in the z-domain of a step, s: (..., 2); Hz."""
@@ -37,6 +37,18 @@ class CurrentPlant(NamedTuple):
         z = np.exp(2j * np.pi * np.asarray(frequencies, dtype=np.float64) * step)
         resolvent = z[..., None, None] * np.eye(2) - transition
         return np.linalg.solve(resolvent, np.broadcast_to(entry[:, None], (*z.shape, 2, 1)))[..., 0]
+
+
+@lru_cache(maxsize=256)
+def _sampled(
+    matrix: tuple[float, ...], entry: tuple[float, ...], step: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Transition (2, 2) and entry (2,) of a step; a response asks for the same many times."""
+    over = exact_step(np.reshape(matrix, (2, 2)), np.reshape(entry, (2, 1)), step)
+    found = np.ascontiguousarray(over.transition), over.constant[:, 0].copy()
+    for part in found:
+        part.setflags(write=False)
+    return found
 
 
 class InputLaw(NamedTuple):

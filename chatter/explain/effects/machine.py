@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from chatter.description.case import MACHINE_PATH, Case
+from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.drive import DriveSection
 from chatter.description.machine.machine_file import MachineFile
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
@@ -19,10 +21,8 @@ _MOST_JOINTS, _MOST_AXES = 24, 6
 #: a factor that is tried, and its bounds
 _FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
 _STARTS, _STARTS_OF_CUTS = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
-#: slope of the hysteresis of a guide, 1/m: its friction is built up within some tenths of a mm
-_HYSTERESIS_SLOPE = 1e4
-#: Coulomb friction, N, and viscous friction, N s/m, of a typical guide
-_COULOMB, _VISCOUS = 20.0, 200.0
+#: friction that is tried at two places, over that of typical ones: what holds at rest is sharp
+_SHARES, _VISCOUS_SHARE = (0.05, 0.3, 1.0, 2.0, 3.5, 6.0, 12.0), 0.05
 #: keys of drives and loops that say how stiff they are
 _STIFFNESS, _GAINS = "stiffness", ("position.gain", "velocity.proportional_gain")
 #: keys of loops that delay what they pass on
@@ -168,83 +168,170 @@ class ControlDelay(_Factor):
         return lags(file)
 
 
+class RubbingPlace(NamedTuple):
+    """Where an axis rubs: key of its target, word in names, units and typical sizes."""
+
+    target: str  # key of the friction law's `on`
+    law: str  # name of the friction law in the machine, before the axis
+    named: str  # before the axis, in names of parameters
+    force: str  # unit of friction
+    damping: str  # unit of viscous friction
+    stiffness: str  # unit of friction over displacement
+    sizes: dict[str, float]  # typical friction, by key of the law
+    hysteresis_slope: float  # friction is built up within some tenths of a mm or of a mrad
+
+    def unit(self, key: str) -> str:
+        """Unit of a quantity of the friction law."""
+        return self.force if key == "coulomb" else self.damping
+
+
+GUIDE = RubbingPlace(
+    "axis", "guide_", "", "N", "N*s/m", "N/m",
+    {"coulomb": 20.0, "viscous": 200.0}, 1e4,
+)  # fmt: skip
+MOTOR = RubbingPlace(
+    "motor", "motor_", "motor_", "N*m", "N*m*s/rad", "N*m/rad",
+    {"coulomb": 0.02, "viscous": 2e-3}, 1e4,
+)  # fmt: skip
+
+
 class AxisFriction(Effect):
-    """Friction of the guides of an axis for which none is declared."""
+    """Friction of the guides, of the motor, or of both, of an axis that has none declared there."""
 
     name = "axis_friction"
     label = "friction of an axis"
-    help = "the guides of an axis of the machine rub: a spring at rest, a damper in motion"
+    help = "guides or motor of an axis of the machine rub: a spring at rest, a damper in motion"
     kinds = ("frf", "milling")
+    places: tuple[RubbingPlace, ...] = (GUIDE,)
 
     def __init__(self, number: int = 0) -> None:
         self.number = number
 
     @property
     def variants(self) -> tuple[Effect, ...]:
-        """Of one of the axes."""
-        return tuple(AxisFriction(number) for number in range(_MOST_AXES))
+        """Of one of the axes, at one of the places."""
+        forms = (AxisFriction, MotorFriction)
+        return tuple(form(number) for number in range(_MOST_AXES) for form in forms)
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """At both places of the same axis."""
+        return (FrictionOfGuideAndMotor(self),)
 
     def applies(self, measurement: Measurement) -> bool:
-        """Of a machine with so many axes without friction."""
+        """Of a machine with so many axes without friction there."""
         case = measurement.case
         return case.on_machine and self.number < len(self._axes(case.machine_file()))
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Coulomb and viscous friction, named by the axis."""
-        axis = self._axis(measurement)
+        """Quantities of the friction laws, named by place and axis."""
+        axis = self.axis(measurement)
         return [
-            free(f"coulomb_{axis}", 0.0, _COULOMB, "N", lower=0.0),
-            free(f"viscous_{axis}", 0.0, _VISCOUS, "N*s/m", lower=0.0),
+            free(f"{key}_{place.named}{axis}", 0.0, place.sizes[key], place.unit(key), lower=0.0)
+            for place in self.places
+            for key in place.sizes
         ]
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Little, and as much as of a sliding guide."""
-        axis = self._axis(measurement)
-        return [
-            {f"coulomb_{axis}": share * _COULOMB, f"viscous_{axis}": share * _VISCOUS}
-            for share in (0.05, 1.0, 5.0)
-        ]
+        sizes = {one.name: one.size for one in self.parameters(measurement)}
+        return [{name: share * size for name, size in sizes.items()} for share in (0.05, 1.0, 5.0)]
 
     def patch(self, case: Case, values: Values) -> Patch:
-        """Friction with hysteresis on the travel of the axis; none where it is nothing."""
+        """Friction with hysteresis at every place; none where it is nothing."""
         del case
-        axis = _axis_of(values)
-        coulomb = float(values[f"coulomb_{axis}"])
-        if not coulomb > 0.0:
-            return {}
-        law = {
-            "law": "tanh-hysteresis",
-            "on": {"axis": axis},
-            "coulomb": coulomb,
-            "viscous": float(values[f"viscous_{axis}"]),
-            "hysteresis_slope": _HYSTERESIS_SLOPE,
-        }
-        return {f"{MACHINE_PATH}friction.guide_{axis}": law}
+        given: Patch = {}
+        for place, axis, own in self._laws(values):
+            if own["coulomb"] > 0.0:
+                given[f"{MACHINE_PATH}friction.{place.law}{axis}"] = {
+                    "law": "tanh-hysteresis",
+                    "on": {place.target: axis},
+                    **own,
+                    "hysteresis_slope": place.hysteresis_slope,
+                }
+        return given
 
     def reported(self, values: Values) -> Reported:
         """Friction, and its stiffness before it slides."""
-        axis = _axis_of(values)
-        coulomb = values[f"coulomb_{axis}"]
-        return {
-            f"coulomb_{axis}": (coulomb, "N"),
-            f"viscous_{axis}": (values[f"viscous_{axis}"], "N*s/m"),
-            f"presliding_stiffness_{axis}": (coulomb * _HYSTERESIS_SLOPE, "N/m"),
-        }
+        told: Reported = {}
+        for place, axis, own in self._laws(values):
+            for key, value in own.items():
+                told[f"{key}_{place.named}{axis}"] = (value, place.unit(key))
+            stiffness = own["coulomb"] * place.hysteresis_slope
+            told[f"presliding_stiffness_{place.named}{axis}"] = (stiffness, place.stiffness)
+        return told
 
-    def _axis(self, measurement: Measurement) -> str:
+    def axis(self, measurement: Measurement) -> str:
+        """Axis that rubs."""
         return self._axes(measurement.case.machine_file())[self.number]
 
-    @staticmethod
-    def _axes(file: MachineFile) -> list[str]:
-        """Axes under control that no friction is declared on."""
-        rubbed = {target for one in file.friction.values() for target in (one.on.axis,)}
+    def _axes(self, file: MachineFile) -> list[str]:
+        """Axes under control that no friction is declared on, at any of the places."""
+        rubbed = {
+            getattr(one.on, place.target) for one in file.friction.values() for place in self.places
+        }
         return [
             name
             for name, axis in file.axis.items()
-            if axis.control is not None and name not in rubbed
+            if axis.control is not None and name not in rubbed and self._has_places(axis)
         ]
 
+    def _has_places(self, axis: AxisSection) -> bool:
+        """Whether the motor of an axis turns, where that is one of the places."""
+        turns = axis.drive is not None and not axis.drive.motor_is_linear
+        return MOTOR not in self.places or turns
 
-def _axis_of(values: Values) -> str:
-    """Axis that the parameters are named by."""
-    return next(key for key in values if key.startswith("coulomb_")).partition("_")[2]
+    def _laws(self, values: Values) -> Iterator[tuple[RubbingPlace, str, dict[str, float]]]:
+        """Place, axis, and quantities of the law there."""
+        for place in self.places:
+            begins = f"coulomb_{place.named}"
+            axis = next(key for key in values if key.startswith(begins)).removeprefix(begins)
+            own = {key: float(values[f"{key}_{place.named}{axis}"]) for key in place.sizes}
+            yield place, axis, own
+
+
+class MotorFriction(AxisFriction):
+    """Friction of the bearings and the nut of an axis, as its motor feels it."""
+
+    places = (MOTOR,)
+
+
+class FrictionOfGuideAndMotor(AxisFriction):
+    """Friction of guides and motor of an axis of which one was found to rub."""
+
+    places = (GUIDE, MOTOR)
+
+    def __init__(self, found: AxisFriction) -> None:
+        super().__init__(found.number)
+        self._found = found
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """None."""
+        return ()
+
+    @property
+    def mistaken_for(self) -> tuple[str, ...]:
+        """Between two places that hold lies what gives way."""
+        return (JointStiffness.name, ControlGain.name, ControlDelay.name)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of an axis that has no friction declared at either place."""
+        case = measurement.case
+        return case.on_machine and self.axis(measurement) in self._axes(case.machine_file())
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Every Coulomb friction of the one place with every one of the other."""
+        axis = self.axis(measurement)
+        return [
+            {
+                f"{key}_{place.named}{axis}": size * (share if key == "coulomb" else _VISCOUS_SHARE)
+                for place, share in zip(self.places, shares, strict=True)
+                for key, size in place.sizes.items()
+            }
+            for shares in itertools.product(_SHARES, repeat=len(self.places))
+        ]
+
+    def axis(self, measurement: Measurement) -> str:
+        """Axis of the friction that was found."""
+        return self._found.axis(measurement)

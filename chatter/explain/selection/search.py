@@ -17,6 +17,7 @@ from chatter.explain.selection.established import (
     reaches_nothing,
     stages_of_kept_effects,
 )
+from chatter.explain.selection.one_for_two import one_for_two
 from chatter.explain.selection.path import Path, best_path, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
@@ -107,10 +108,13 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     path = best_path(Path([], problem, now), first, split, progress)
     if len(path.stages) > 1:
         progress("trying again the effects added first", 0.85)
-        path = tried_again(path, split)
+        path = one_for_two(tried_again(path, split), split, progress)
     path, split, final = _to_all_runs(path, split, progress)
     if path.stages and not is_at_noise(path.problem, final):
-        path = richer(path, split, progress)
+        before, path = path, richer(path, split, progress)
+        if path is not before and len(path.stages) > 1:
+            # another may have stood for what the richer member holds
+            path = tried_again(path, split)
         final = _of_all_runs(path)
     helping: list[Stage] = []
     if path.stages and not is_at_noise(path.problem, final):

@@ -118,20 +118,25 @@ def test_values_of_the_machine_have_tolerances(folder):
     assert found.case.get(path) == pytest.approx(0.8 * case.get(path), rel=0.02)
 
 
-def test_missing_friction_of_an_axis_is_named(folder):
-    """Declared without friction on the guides of Y; FRFs at rest and in motion."""
+@pytest.mark.parametrize(
+    ("missing", "named", "coulomb"),
+    [("translation_y", "Y", 99.2), ("rotation_y", "motor_Y", 0.113)],
+)
+def test_missing_friction_of_an_axis_is_named(folder, missing, named, coulomb):
+    """Declared without friction on the guides of Y, or on its motor; FRFs at rest and in motion."""
     truth = load(folder / "case.toml")
-    machine = truth.machine_file()
-    text = machine.to_toml()
-    begin = text.index("[friction.translation_y]")
-    end = text.index("[friction.rotation_z]")
-    (folder / "rubless.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
-    made = measured(folder, truth, "rub", ("y",), ("at_rest", "moving"))
-    declared = truth.patch({"structure.machine": str(folder / "rubless.toml")})
+    text = truth.machine_file().to_toml()
+    begin = text.index(f"[friction.{missing}]")
+    end = text.find("[", text.index("hysteresis_slope", begin))
+    (folder / f"rubless_{named}.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
+    made = measured(folder, truth, f"rub_{named}", ("y",), ("at_rest", "moving"))
+    declared = truth.patch({"structure.machine": str(folder / f"rubless_{named}.toml")})
     summary = chatter.explain(made, declared).summary()
     assert [effect["name"] for effect in summary["effects"]] == ["axis_friction"]
     found = summary["effects"][0]["parameters"]
-    assert found["presliding_stiffness_Y"]["value"] == pytest.approx(99.2 * 1.15e4, rel=0.1)
+    # what shows at rest is the friction times the slope of its hysteresis
+    told = found[f"presliding_stiffness_{named}"]["value"]
+    assert told == pytest.approx(coulomb * 1.15e4, rel=0.1)
 
 
 def test_a_slower_current_loop_is_another_machine(folder):
