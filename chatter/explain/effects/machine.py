@@ -21,7 +21,7 @@ _MOST_JOINTS, _MOST_AXES = 24, 6
 #: a factor that is tried, and its bounds
 _FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
 _STARTS, _STARTS_OF_CUTS = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
-#: friction that is tried at two places, over that of typical ones: what holds at rest is sharp
+#: friction that is tried at two parts, over that of typical ones: what holds at rest is sharp
 _SHARES, _VISCOUS_SHARE = (0.05, 0.3, 1.0, 2.0, 3.5, 6.0, 12.0), 0.05
 #: keys of drives and loops that say how stiff they are
 _STIFFNESS, _GAINS = "stiffness", ("position.gain", "velocity.proportional_gain")
@@ -168,7 +168,7 @@ class ControlDelay(_Factor):
         return lags(file)
 
 
-class RubbingPlace(NamedTuple):
+class RubbingPart(NamedTuple):
     """Where an axis rubs: key of its target, word in names, units and typical sizes."""
 
     target: str  # key of the friction law's `on`
@@ -185,11 +185,11 @@ class RubbingPlace(NamedTuple):
         return self.force if key == "coulomb" else self.damping
 
 
-GUIDE = RubbingPlace(
+GUIDE = RubbingPart(
     "axis", "guide_", "", "N", "N*s/m", "N/m",
     {"coulomb": 20.0, "viscous": 200.0}, 1e4,
 )  # fmt: skip
-MOTOR = RubbingPlace(
+MOTOR = RubbingPart(
     "motor", "motor_", "motor_", "N*m", "N*m*s/rad", "N*m/rad",
     {"coulomb": 0.02, "viscous": 2e-3}, 1e4,
 )  # fmt: skip
@@ -202,20 +202,20 @@ class AxisFriction(Effect):
     label = "friction of an axis"
     help = "guides or motor of an axis of the machine rub: a spring at rest, a damper in motion"
     kinds = ("frf", "milling")
-    places: tuple[RubbingPlace, ...] = (GUIDE,)
+    parts: tuple[RubbingPart, ...] = (GUIDE,)
 
     def __init__(self, number: int = 0) -> None:
         self.number = number
 
     @property
     def variants(self) -> tuple[Effect, ...]:
-        """Of one of the axes, at one of the places."""
+        """Of one of the axes, at one of the parts."""
         forms = (AxisFriction, MotorFriction)
         return tuple(form(number) for number in range(_MOST_AXES) for form in forms)
 
     @property
     def richer(self) -> tuple[Effect, ...]:
-        """At both places of the same axis."""
+        """At both parts of the same axis."""
         return (FrictionOfGuideAndMotor(self),)
 
     def applies(self, measurement: Measurement) -> bool:
@@ -224,12 +224,12 @@ class AxisFriction(Effect):
         return case.on_machine and self.number < len(self._axes(case.machine_file()))
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Quantities of the friction laws, named by place and axis."""
+        """Quantities of the friction laws, named by part and axis."""
         axis = self.axis(measurement)
         return [
-            free(f"{key}_{place.named}{axis}", 0.0, place.sizes[key], place.unit(key), lower=0.0)
-            for place in self.places
-            for key in place.sizes
+            free(f"{key}_{part.named}{axis}", 0.0, part.sizes[key], part.unit(key), lower=0.0)
+            for part in self.parts
+            for key in part.sizes
         ]
 
     def starts(self, measurement: Measurement) -> list[Values]:
@@ -238,27 +238,27 @@ class AxisFriction(Effect):
         return [{name: share * size for name, size in sizes.items()} for share in (0.05, 1.0, 5.0)]
 
     def patch(self, case: Case, values: Values) -> Patch:
-        """Friction with hysteresis at every place; none where it is nothing."""
+        """Friction with hysteresis at every part; none where it is nothing."""
         del case
         given: Patch = {}
-        for place, axis, own in self._laws(values):
+        for part, axis, own in self._laws(values):
             if own["coulomb"] > 0.0:
-                given[f"{MACHINE_PATH}friction.{place.law}{axis}"] = {
+                given[f"{MACHINE_PATH}friction.{part.law}{axis}"] = {
                     "law": "tanh-hysteresis",
-                    "on": {place.target: axis},
+                    "on": {part.target: axis},
                     **own,
-                    "hysteresis_slope": place.hysteresis_slope,
+                    "hysteresis_slope": part.hysteresis_slope,
                 }
         return given
 
     def reported(self, values: Values) -> Reported:
         """Friction, and its stiffness before it slides."""
         told: Reported = {}
-        for place, axis, own in self._laws(values):
+        for part, axis, own in self._laws(values):
             for key, value in own.items():
-                told[f"{key}_{place.named}{axis}"] = (value, place.unit(key))
-            stiffness = own["coulomb"] * place.hysteresis_slope
-            told[f"presliding_stiffness_{place.named}{axis}"] = (stiffness, place.stiffness)
+                told[f"{key}_{part.named}{axis}"] = (value, part.unit(key))
+            stiffness = own["coulomb"] * part.hysteresis_slope
+            told[f"presliding_stiffness_{part.named}{axis}"] = (stiffness, part.stiffness)
         return told
 
     def axis(self, measurement: Measurement) -> str:
@@ -266,40 +266,40 @@ class AxisFriction(Effect):
         return self._axes(measurement.case.machine_file())[self.number]
 
     def _axes(self, file: MachineFile) -> list[str]:
-        """Axes under control that no friction is declared on, at any of the places."""
+        """Axes under control that no friction is declared on, at any of the parts."""
         rubbed = {
-            getattr(one.on, place.target) for one in file.friction.values() for place in self.places
+            getattr(one.on, part.target) for one in file.friction.values() for part in self.parts
         }
         return [
             name
             for name, axis in file.axis.items()
-            if axis.control is not None and name not in rubbed and self._has_places(axis)
+            if axis.control is not None and name not in rubbed and self._has_parts(axis)
         ]
 
-    def _has_places(self, axis: AxisSection) -> bool:
-        """Whether the motor of an axis turns, where that is one of the places."""
+    def _has_parts(self, axis: AxisSection) -> bool:
+        """Whether the motor of an axis turns, where that is one of the parts."""
         turns = axis.drive is not None and not axis.drive.motor_is_linear
-        return MOTOR not in self.places or turns
+        return MOTOR not in self.parts or turns
 
-    def _laws(self, values: Values) -> Iterator[tuple[RubbingPlace, str, dict[str, float]]]:
+    def _laws(self, values: Values) -> Iterator[tuple[RubbingPart, str, dict[str, float]]]:
         """Place, axis, and quantities of the law there."""
-        for place in self.places:
-            begins = f"coulomb_{place.named}"
+        for part in self.parts:
+            begins = f"coulomb_{part.named}"
             axis = next(key for key in values if key.startswith(begins)).removeprefix(begins)
-            own = {key: float(values[f"{key}_{place.named}{axis}"]) for key in place.sizes}
-            yield place, axis, own
+            own = {key: float(values[f"{key}_{part.named}{axis}"]) for key in part.sizes}
+            yield part, axis, own
 
 
 class MotorFriction(AxisFriction):
     """Friction of the bearings and the nut of an axis, as its motor feels it."""
 
-    places = (MOTOR,)
+    parts = (MOTOR,)
 
 
 class FrictionOfGuideAndMotor(AxisFriction):
     """Friction of guides and motor of an axis of which one was found to rub."""
 
-    places = (GUIDE, MOTOR)
+    parts = (GUIDE, MOTOR)
 
     def __init__(self, found: AxisFriction) -> None:
         super().__init__(found.number)
@@ -312,24 +312,24 @@ class FrictionOfGuideAndMotor(AxisFriction):
 
     @property
     def mistaken_for(self) -> tuple[str, ...]:
-        """Between two places that hold lies what gives way."""
+        """Between two parts that hold lies what gives way."""
         return (JointStiffness.name, ControlGain.name, ControlDelay.name)
 
     def applies(self, measurement: Measurement) -> bool:
-        """Of an axis that has no friction declared at either place."""
+        """Of an axis that has no friction declared at either part."""
         case = measurement.case
         return case.on_machine and self.axis(measurement) in self._axes(case.machine_file())
 
     def starts(self, measurement: Measurement) -> list[Values]:
-        """Every Coulomb friction of the one place with every one of the other."""
+        """Every Coulomb friction of the one part with every one of the other."""
         axis = self.axis(measurement)
         return [
             {
-                f"{key}_{place.named}{axis}": size * (share if key == "coulomb" else _VISCOUS_SHARE)
-                for place, share in zip(self.places, shares, strict=True)
-                for key, size in place.sizes.items()
+                f"{key}_{part.named}{axis}": size * (share if key == "coulomb" else _VISCOUS_SHARE)
+                for part, share in zip(self.parts, shares, strict=True)
+                for key, size in part.sizes.items()
             }
-            for shares in itertools.product(_SHARES, repeat=len(self.places))
+            for shares in itertools.product(_SHARES, repeat=len(self.parts))
         ]
 
     def axis(self, measurement: Measurement) -> str:
