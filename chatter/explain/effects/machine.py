@@ -312,7 +312,7 @@ class FrictionOfGuideAndMotor(AxisFriction):
 
     @property
     def mistaken_for(self) -> tuple[str, ...]:
-        """Between two parts that hold lies what gives way."""
+        """Between two parts that hold lies what is compliant."""
         return (JointStiffness.name, ControlGain.name, ControlDelay.name)
 
     def applies(self, measurement: Measurement) -> bool:

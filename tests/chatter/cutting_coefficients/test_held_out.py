@@ -31,7 +31,7 @@ axial_depth = "1 mm"
 
 
 def vibrating(feed, start):
-    """Forces on a tool (n, 3) that gives way along y and cuts its own waves; two straight edges."""
+    """Forces on a tool (n, 3) that vibrates along y and cuts its own waves; two straight edges."""
     count, period = RATE // 2, RATE // round(2 * TURN)
     omega = 2.0 * math.pi * FREQUENCY
     # exact over a step with the force held
