@@ -14,7 +14,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.receptance.coupling import joint_matrix
-from dynamics.reduction.modal_truncation import ROUNDING, undamped_modes
+from dynamics.reduction.modal_truncation import ROUNDING, symmetric_factors, undamped_modes
 from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError, dense
 from dynamics.structure.rigid_body_motion import DIRECTIONS
 
@@ -273,17 +273,11 @@ def _solved_for(rows: NDArray[np.float64]) -> tuple[scipy.sparse.csr_array, scip
 
 def _static_shapes(stiffness: Matrix, coupling: Matrix) -> NDArray[np.float64]:
     """Constraint modes -K_ii^-1 K_ib (inner, boundary)."""
-    import scipy.sparse.linalg
-
     if not stiffness.shape[0]:
         return np.zeros(coupling.shape)
     if scipy.sparse.issparse(stiffness):
         try:
-            factors = scipy.sparse.linalg.splu(
-                scipy.sparse.csc_array(stiffness),
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
+            factors = symmetric_factors(stiffness)
         except RuntimeError as error:
             # exactly singular
             raise StructureError(MOVES_FREELY) from error

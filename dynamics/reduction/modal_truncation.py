@@ -9,7 +9,7 @@ out is kept between the points asked for; of a free structure it is the inertia-
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -129,28 +129,44 @@ def _sparse_shapes(
         return np.zeros((size, 0))
     scale = stiffness.diagonal().max() / mass.diagonal().max()
     shift = -max((2.0 * np.pi) ** 2, 1e-11 * scale)
+    shifted = symmetric_factors(stiffness - shift * mass)
     squared, shapes = scipy.sparse.linalg.eigsh(
-        stiffness, wanted, mass, sigma=shift, v0=np.linspace(1.0, 2.0, size)
+        stiffness,
+        wanted,
+        mass,
+        sigma=shift,
+        v0=np.linspace(1.0, 2.0, size),
+        OPinv=scipy.sparse.linalg.LinearOperator((size, size), shifted.solve, dtype=np.float64),
     )
-    # just below the last one, so that a pair of equal frequencies is not cut in two
-    gap = limit if count is None else (1.0 - 1e-6) * squared.max()
-    if _modes_below(mass, stiffness, gap) > np.sum(squared < gap):
+    if count is not None:
+        # just below the last one, so that a pair of equal frequencies is not cut in two
+        limit = (1.0 - 1e-6) * squared.max()
+        below = _modes_below(mass, stiffness, limit)
+    if below > np.sum(squared < limit):
         raise StructureError(f"modes: only some of those up to {highest:g} Hz were found")
     return shapes
+
+
+def symmetric_factors(matrix: scipy.sparse.csc_array) -> Any:
+    """Factors (SuperLU) of a symmetric matrix in the order of least degree, pivots on the diagonal.
+
+    RuntimeError if it is singular.
+    """
+    import scipy.sparse.linalg
+
+    return scipy.sparse.linalg.splu(
+        scipy.sparse.csc_array(matrix),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
 
 
 def _modes_below(
     mass: scipy.sparse.csc_array, stiffness: scipy.sparse.csc_array, limit: float
 ) -> int:
     """Number of modes with omega^2 below a limit: negative pivots of K - limit M (Sylvester)."""
-    import scipy.sparse.linalg
-
-    factors = scipy.sparse.linalg.splu(
-        scipy.sparse.csc_array(stiffness - limit * mass),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    factors = symmetric_factors(stiffness - limit * mass)
     if not np.array_equal(factors.perm_r, factors.perm_c):
         raise StructureError("modes: pivots off the diagonal; take another highest frequency")
     return int(np.sum(factors.U.diagonal() < 0.0))
