@@ -37,9 +37,9 @@ def explain(
     from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
-    with progress_bar("reading the signals") as work:
-        result = run_explain(declared, progress=partial(report_stage, work))
     folder = options.output_folder(out, measurement.resolve().stem)
+    with progress_bar("reading the signals") as work:
+        result = run_explain(declared, progress=partial(report_stage, work), folder=folder)
     options.print_coefficients(declared.case)
     present(result, folder, json=json, words=_print_explanation)
 

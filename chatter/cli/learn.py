@@ -55,6 +55,7 @@ def learn(options: LearnOptions) -> None:
     description = patched_case(options.case, options.assignments)
     from chatter.learning.learn import learn as run_learn
 
+    folder = output_folder(options.out, options.case.stem)
     with progress_bar("learning from the tests") as work:
         found = run_learn(
             description,
@@ -64,8 +65,8 @@ def learn(options: LearnOptions) -> None:
             particles=options.particles,
             seed=options.seed,
             progress=partial(report_stage, work),
+            folder=folder,
         )
-    folder = output_folder(options.out, options.case.stem)
     print_coefficients(description)
     present(found, folder, json=options.json, words=_print_learnt)
 

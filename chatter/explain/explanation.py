@@ -31,7 +31,7 @@ from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_be
 from chatter.explain.measurement import Measurement
 from chatter.explain.measurement_file import read_measurement
 from chatter.explain.next_measurement.proposal import next_measurement
-from chatter.explain.prediction import Predictions
+from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.reported_effects import confounded, parameters_of, probability
 from chatter.explain.residuals.residual_dependence import ResidualDependence
 from chatter.explain.residuals.signature import Signature, signature_of
@@ -307,6 +307,7 @@ class Explanation:
         written = write_results(folder, texts, {"residual.png": picture})
         path = Path(folder) / "case-updated.toml"
         self.case.save(path)
+        self.predictions.kept.discard()
         return [*written, path]
 
 
@@ -392,6 +393,7 @@ def explain(
     measurement: str | Path | Measurement,
     case: str | Path | Case | None = None,
     progress: Progress = lambda *_: None,
+    folder: str | Path | None = None,
 ) -> Explanation | Contradiction:
     """Find out what the declared case of a measurement lacks.
 
@@ -403,11 +405,16 @@ def explain(
         Instead of the case that the folder names.
     progress : callable, optional
         Called with (what is being done, share done).
+    folder : path, optional
+        Keeps predictions below the result cache there until `Explanation.save` has written the
+        results, and goes on from those of an earlier run that was ended.
 
     Raises
     ------
     InputError
         If the measurement or its case cannot be used.
+    RunError
+        If it is interrupted while predictions are kept, or they cannot be kept.
 
     Notes
     -----
@@ -419,11 +426,14 @@ def explain(
     if usable.is_fatal:
         return Contradiction(usable)
     kind = KINDS[measurement.kind]
-    prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
-    searched = search_of_tests if kind.name == Stability.name else search
-    found = searched(prepared, predictions, progress)
-    verdict = verdict_of(found)
-    terms = None if verdict in (EXPLAINED, NOTHING_MISSING) else _learnt(found, verdict, progress)
+    prepared = kind.prepared(usable.measurement)
+    predictions = Predictions(kind, kept_predictions(folder, "explain", prepared))
+    with predictions.kept.going_on():
+        searched = search_of_tests if kind.name == Stability.name else search
+        found = searched(prepared, predictions, progress)
+        verdict = verdict_of(found)
+        is_settled = verdict in (EXPLAINED, NOTHING_MISSING)
+        terms = None if is_settled else _learnt(found, verdict, progress)
     return Explanation(prepared, found, verdict, predictions, usable.findings, terms)
 
 

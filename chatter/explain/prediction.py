@@ -2,12 +2,15 @@
 
 from collections import OrderedDict
 from collections.abc import Mapping
+from pathlib import Path
 from threading import Lock
 from typing import Any
 
 from chatter.description.case import Case
 from chatter.explain.kinds.kind import Kind, Signals
-from chatter.explain.measurement import Run
+from chatter.explain.measurement import Measurement, Run
+from chatter.studies.kept_arrays import KeptArrays, digest_of
+from chatter.studies.model import fingerprint
 
 #: memory of the predictions kept, bytes: two dozen of a measurement of some megabytes
 _MOST_BYTES = 96_000_000
@@ -17,11 +20,19 @@ class Predictions:
     """Predictions of a kind of measurement, kept by the content of the case and the run.
 
     A verdict asks for the same predictions several times: for errors, noise, residuals and reports.
-    Parts of a run share the prediction of the whole. `made` counts those computed.
+    Parts of a run share the prediction of the whole. `made` counts those computed or read.
+
+    Parameters
+    ----------
+    kind : Kind
+    kept : KeptArrays, optional
+        Where they are kept on disk, so that a search that was ended goes on.
     """
 
-    def __init__(self, kind: Kind) -> None:
-        self.kind = kind
+    def __init__(self, kind: Kind, kept: KeptArrays | None = None) -> None:
+        self.kept = kept or KeptArrays(None)
+        self.kind = kind.keeping(self.kept)
+        self._digests: dict[int, tuple[Run, str]] = {}
         self.made = 0
         self._kept: OrderedDict[tuple[str, int], tuple[Run, Signals]] = OrderedDict()
         self._bytes = 0
@@ -41,7 +52,7 @@ class Predictions:
             kept = self._kept.get(key)
             if kept is not None:
                 self._kept.move_to_end(key)
-        found = self.kind.predict(own, whole) if kept is None else kept[1]
+        found = self._made(own, whole) if kept is None else kept[1]
         if kept is None:
             self._keep(key, whole, found)
         if run.part is None:
@@ -62,6 +73,23 @@ class Predictions:
                 self._coarse[id(whole.signals)] = known
         return run.with_overrides(known[1]) if known[1] else run
 
+    def _made(self, own: Case, whole: Run) -> Signals:
+        """Predict a whole run, or read what is kept of it."""
+        if not self.kind.stands_alone(whole):
+            return self.kind.predict(own, whole)
+        inputs = f"{whole.kind} {whole.name} {self._digest_of(whole)} {own.content}"
+        return self.kept.made(inputs, lambda: self.kind.predict(own, whole))
+
+    def _digest_of(self, whole: Run) -> str:
+        """Digest of the signals of a run."""
+        with self._lock:
+            known = self._digests.get(id(whole.signals))
+        if known is None:
+            known = whole, digest_of(whole.signals)
+            with self._lock:
+                self._digests[id(whole.signals)] = known
+        return known[1]
+
     def _keep(self, key: tuple[str, int], whole: Run, found: Signals) -> None:
         with self._lock:
             self.made += 1
@@ -72,6 +100,17 @@ class Predictions:
             self._bytes += _size(found)
             while self._bytes > _MOST_BYTES and len(self._kept) > 1:
                 self._bytes -= _size(self._kept.popitem(last=False)[1][1])
+
+
+def kept_predictions(
+    folder: str | Path | None, purpose: str, measurement: Measurement
+) -> KeptArrays:
+    """Predictions of a measurement that an earlier run has kept in a folder of results, if any."""
+    if folder is None:
+        return KeptArrays(None)
+    signals = "".join(f"{run.name} {digest_of(run.signals)}" for run in measurement.runs)
+    described = repr((measurement.kind, measurement.record, dict(measurement.tolerances)))
+    return KeptArrays(folder, purpose, fingerprint(measurement.case), described, signals)
 
 
 def _size(signals: Signals) -> int:

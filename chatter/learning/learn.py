@@ -15,7 +15,7 @@ from chatter.description.formatting import formatted
 from chatter.description.units import rpm
 from chatter.explain.kinds.stability import Stability, likely_stable
 from chatter.explain.measurement import Measurement
-from chatter.explain.prediction import Predictions
+from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, csv_text, finite_or_none, short_repr, write_results
@@ -202,6 +202,7 @@ class Learnt:
             )
         for name, case in cases.items():
             case.save(Path(folder) / name)
+        self.problem.predictions.kept.discard()
         return [*written, *(Path(folder) / name for name in cases)]
 
 
@@ -221,6 +222,7 @@ def learn(
     particles: int = DEFAULT_PARTICLES,
     seed: int = 1,
     progress: Progress = lambda *_: None,
+    folder: str | Path | None = None,
 ) -> Learnt:
     """Learn from cutting tests what a case leaves open, and propose the next cut.
 
@@ -239,24 +241,30 @@ def learn(
         Number of equally likely particles, at least 32; of the random numbers.
     progress : callable, optional
         Called with (what is being done, share done).
+    folder : path, optional
+        Keeps predictions below the result cache there until `Learnt.save` has written the results,
+        and goes on from those of an earlier run that was ended.
 
     Raises
     ------
     InputError
         If the case or the tests cannot be used, or an option is out of range.
+    RunError
+        If it is interrupted while predictions are kept, or they cannot be kept.
     """
     declared = case if isinstance(case, Case) else load(case)
     _check(aim, risk, particles)
     measurement = cuts if isinstance(cuts, Measurement) else read_cuts(cuts, declared)
-    problem = problem_of(measurement)
+    problem = problem_of(measurement, folder)
     prior = prior_of(problem)
     generator = np.random.default_rng(seed)
     before = prior_particles(prior, particles, generator)
-    after = updated(before, Likelihood(problem, prior), generator, progress)
-    progress("stability of all particles", 1.0)
-    speeds, depths = _ranges(measurement, problem, after)
-    last = _diagram(problem, after, speeds, depths, None)
-    first = last if not problem.effects else _diagram(problem, after, speeds, depths, 0.0)
+    with problem.predictions.kept.going_on():
+        after = updated(before, Likelihood(problem, prior), generator, progress)
+        progress("stability of all particles", 1.0)
+        speeds, depths = _ranges(measurement, problem, after)
+        last = _diagram(problem, after, speeds, depths, None)
+        first = last if not problem.effects else _diagram(problem, after, speeds, depths, 0.0)
     return Learnt(declared, measurement, problem, before, after, last, first, aim, risk)
 
 
@@ -269,12 +277,16 @@ def _check(aim: str, risk: float, particles: int) -> None:
         raise InputError(f"--particles {particles}: a number from 32 to 100000 is required")
 
 
-def problem_of(measurement: Measurement) -> Problem:
-    """Problem of tests, with wear where they show when they were made."""
+def problem_of(measurement: Measurement, folder: str | Path | None = None) -> Problem:
+    """Problem of tests, with wear where they show when they were made.
+
+    Predictions are kept below a folder of results, where one is given.
+    """
     kind, measurement = Stability(), of_a_turning_tool(measurement)
     measurement.case.require(*kind.sections)
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
-    return with_wear(Problem(measurement, Predictions(kind), noise))
+    predictions = Predictions(kind, kept_predictions(folder, "learn", measurement))
+    return with_wear(Problem(measurement, predictions, noise))
 
 
 def _diagram(

@@ -15,6 +15,7 @@ from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
 from chatter.description.quantities import QuantityField
 from chatter.description.toml_document import parse_document, read_text
+from chatter.studies.program import program
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
@@ -80,13 +81,10 @@ def standard_deviations(model: Model) -> dict[str, float]:
 
 def fingerprint(model: Model) -> str:
     """Text that changes where the model, a file that it names or the program changes."""
-    from chatter.engine.presets import CACHE_FOLDER
-
     digest = hashlib.sha256()
     parts = [model] if machine_of(model) in (None, model) else [model, machine_of(model)]
     for part in parts:
-        # the folder of compiled code is named by a hash of all sources
-        digest.update(f"{CACHE_FOLDER.name} {type(part).__name__} {part.content}".encode())
+        digest.update(f"{program()} {type(part).__name__} {part.content}".encode())
         for path in sorted(_files(part.model_dump(mode="python"))):
             digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()

@@ -21,6 +21,7 @@ from chatter.explain.residuals.channel_residual import ChannelResidual, white_le
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.residual import Residual
 from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
+from chatter.studies.kept_arrays import KeptArrays
 
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
@@ -116,6 +117,17 @@ class Kind(ABC):
     @abstractmethod
     def predict(self, case: Case, run: Run) -> Signals:
         """Signals of a whole run by a case with the overrides of the run, at its samples, SI."""
+
+    def stands_alone(self, run: Run) -> bool:
+        """Whether a prediction of a run is the same to the last bit whatever was predicted before.
+
+        Only such a one is kept on disk as it is. True by default.
+        """
+        return True
+
+    def keeping(self, kept: KeptArrays) -> "Kind":
+        """Return the kind with what costs most kept on disk; itself where predictions are."""
+        return self
 
     @abstractmethod
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:

@@ -14,6 +14,7 @@ from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.residual import Residual, over_noise
+from chatter.studies.kept_arrays import KeptArrays
 
 #: kinds that hold cuts to draw among lobes, the best first
 _OF_CUTS = ("stability", "milling")
@@ -74,6 +75,14 @@ class SetUp(Kind):
     def predict(self, case: Case, run: Run) -> Signals:
         """Signals of a run as its kind predicts them."""
         return self._of(run).predict(case, run)
+
+    def stands_alone(self, run: Run) -> bool:
+        """As the kind of the run does."""
+        return self._of(run).stands_alone(run)
+
+    def keeping(self, kept: KeptArrays) -> Kind:
+        """Return the set-up with each of its kinds as it keeps what costs most."""
+        return SetUp({name: kind.keeping(kept) for name, kind in self.kinds.items()})
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Declared values that any of the kinds refits, each once."""

@@ -1,7 +1,7 @@
 """Cutting tests judged stable or chatter: how likely is what each of them shows."""
 
 from collections import OrderedDict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from threading import Lock
 
@@ -38,6 +38,7 @@ from chatter.explain.stability_margin import (
     response_of_tests,
     tests_of,
 )
+from chatter.studies.kept_arrays import KeptArrays, digest_of
 
 #: scatter of a critical depth from test to test, as a share, and tests judged wrongly for no reason
 SCATTER, _WRONG = 0.06, 0.02
@@ -76,8 +77,16 @@ class Stability(Kind):
     #: twice the logarithm of the likelihood, whatever the number of points
     least_gain = (8.0, 0.0)
 
-    def __init__(self) -> None:
-        self._responses = _Responses()
+    def __init__(self, kept: KeptArrays | None = None) -> None:
+        self._responses = _Responses(kept or KeptArrays(None))
+
+    def stands_alone(self, run: Run) -> bool:
+        """No: tests are solved together with those that were not solved before."""
+        return False
+
+    def keeping(self, kept: KeptArrays) -> Kind:
+        """Return the kind with the responses of tests kept on disk."""
+        return Stability(kept)
 
     def channels(self, run: Run) -> tuple[str, ...]:
         """The verdicts, the chatter frequencies or the spindle powers: one of them a run."""
@@ -268,7 +277,8 @@ class _Responses:
     Every test is computed once: those whose chatter frequency is known are some of the verdicts.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, kept: KeptArrays) -> None:
+        self._on_disk = kept
         self._kept: OrderedDict[Case, dict[tuple[float, ...], tuple[float, ...]]] = OrderedDict()
         self._lock = Lock()
 
@@ -284,10 +294,19 @@ class _Responses:
                 self._kept.popitem(last=False)
         unknown = np.array([key not in known for key in keys])
         if unknown.any():
-            parts = response_of_tests(case, tests.at(unknown))
+            parts = self._solved(case, tests.at(unknown))
             found = zip(*(part.tolist() for part in parts), strict=True)
             known.update(zip((keys[k] for k in np.flatnonzero(unknown)), found, strict=True))
         return ResponseOfTests(*np.array([known[key] for key in keys]).T)
+
+    def _solved(self, case: Case, tests: CuttingTests) -> Iterable[Array]:
+        """Fields of the response of tests that are solved together, or what is kept of it."""
+        if self._on_disk.path is None:
+            return response_of_tests(case, tests)
+        columns = {"speed": tests.speed, "depth": tests.depth, **tests.varied}
+        return self._on_disk.made(
+            f"{digest_of(columns)} {case.content}", lambda: response_of_tests(case, tests)._asdict()
+        ).values()
 
 
 def _without_edge_forces(case: Case) -> Case:
