@@ -240,7 +240,8 @@ def delayed_forces(group, rotation, point):
                 force = part_of_slice(cut, tooth, piece, seen, heading)
             force = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, force)
             mean = force
-            if not settled and (steep_in or steep_out):
+            # well inside the arc there is no jump, even where a part of the slice is in the air
+            if not (inside and ahead) and (steep_in or steep_out):
                 if (steep_in or inside) and (steep_out or ahead):
                     mean = straight_mean(cut, tooth, piece, position, rotation, heading)
                     mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
