@@ -9,7 +9,8 @@ import typer
 
 from chatter.description.assignments import parse_assignments
 from chatter.description.bare_speeds import refuse_bare_speed_assignments
-from chatter.description.case import Case, load
+from chatter.description.case import MACHINE_PATH, Case, load
+from chatter.description.errors import InputError
 from chatter.description.material_words import coefficients_in_words, notes_on_material
 from chatter.description.patchable import Description
 from chatter.report.console import print_message, print_notes
@@ -57,8 +58,17 @@ Method = Annotated[
 
 
 def patched_case(path: Path, assignments: list[str] | None) -> Case:
-    """Load a case file and apply the assignments of the command line."""
-    return patched(load(path), assignments)
+    """Load a case file and apply the assignments of the command line, which may mend it."""
+    try:
+        case = load(path)
+    except InputError:
+        # a machine is read once the case stands
+        values = parse_assignments(assignments or [])
+        own = {key: one for key, one in values.items() if not key.startswith(MACHINE_PATH)}
+        if not own:
+            raise
+        case = Case.from_mended_file(path, own)
+    return patched(case, assignments)
 
 
 def print_coefficients(case: Case) -> None:

@@ -164,6 +164,27 @@ class Description(Section):
         return cls._of_document(document, str(path), path.parent, is_foreign=not was_written(text))
 
     @classmethod
+    def from_mended_file(cls, path: str | Path, values: Mapping[str, Any]) -> Self:
+        """Read a file that is wrong by itself and right with some values set; see `patch`.
+
+        Raises
+        ------
+        InputError
+            If it describes nothing with the values either.
+        """
+        path = Path(path)
+        document = parse_document(read_text(path, cls.NOUN), str(path))
+        for key, value in values.items():
+            try:
+                steps = cls._steps(key)
+                cls._check_known(steps)
+                set_value(document, steps, plain(value, steps, cls.NOUN), cls.LAYOUT)
+            except InputError as error:
+                raise InputError([f"{path}: {text}" for text in error.messages]) from None
+        refuse_bare_speeds(cls, document.unwrap(), str(path))
+        return cls._of_document(document, str(path), path.parent, is_foreign=True)
+
+    @classmethod
     def from_text(cls, text: str, name: str = "", folder: str | Path = ".") -> Self:
         """Read TOML text.
 

@@ -23,6 +23,9 @@ _STIFFNESS = _Usual(0.05e6, 1e10, "N/um", 1e-6, "modes of tools, spindles and th
 _DAMPING = _Usual(5e-4, 0.3, "", 1.0, "damping ratios of machines and tools")
 _PRESSURE = _Usual(50e6, 1e10, "MPa", 1e-6, "metals and plastics")
 _CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling cutters")
+_DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
+#: diameters beyond which a depth of cut is asked about, and those that common flutes are long
+_DEEPEST, _COMMON_FLUTES = 8.0, 3.0
 #: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
 _CARBIDE, _STIFFER = 650e9, 1.5
 #: growth of vibration from tooth to tooth beyond which the input is in doubt
@@ -43,7 +46,35 @@ def questions(case: Case) -> list[str]:
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
         asked += _question("cutting speed", speed, _CUTTING_SPEED)
+        asked += _question("tool.diameter", case.tool.diameter, _DIAMETER)
+        asked += _question_of_depth(case)
     return asked
+
+
+def _question_of_depth(case: Case) -> list[str]:
+    """Ask about a cut deeper than any tool of its diameter cuts."""
+    depth, diameter = case.cut.axial_depth, case.tool.diameter
+    if depth <= _DEEPEST * diameter:
+        return []
+    return [
+        f"cut.axial_depth: is {1e3 * depth:.4g} mm meant? flutes of a tool of "
+        f"{1e3 * diameter:.4g} mm are hardly longer than {1e3 * _DEEPEST * diameter:.4g} mm"
+    ]
+
+
+def question_of_flutes(case: Case, deepest: float) -> list[str]:
+    """Sentence on a depth of a result, m, that the tool may not reach; none if its length is known.
+
+    `deepest` is a limit, a pocket or an optimum; a depth of inf is none.
+    """
+    tool = case.tool
+    stated = math.isfinite(tool.depth_that_tool_allows)
+    if stated or not math.isfinite(deepest) or deepest <= _COMMON_FLUTES * tool.diameter:
+        return []
+    return [
+        f"{1e3 * deepest:.3g} mm are {deepest / tool.diameter:.2g} diameters of the tool: state "
+        "tool.flute_length, and no depth goes beyond it"
+    ]
 
 
 def _question_of_stiff_tool(case: Case) -> list[str]:

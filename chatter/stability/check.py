@@ -13,7 +13,7 @@ from chatter.compile.inclined_axis import effective_diameter, inclined_engagemen
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.progress import Progress, no_progress
-from chatter.description.questioned import question_of_spectral_radius
+from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import (
@@ -315,6 +315,7 @@ def check(
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
             *question_of_spectral_radius(abs(multiplier.value)),
+            *question_of_flutes(case, float(limit.critical_depth[0])),
             *model.notes,
             *notes_of(neglected),
             *notes_on_dashpot(model, chosen),

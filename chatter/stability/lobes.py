@@ -7,6 +7,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
+from chatter.description.questioned import question_of_flutes
 from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
@@ -80,6 +81,7 @@ def lobes(
         notes=(
             *model.notes, *notes_of(neglected),
             *notes_on_dashpot(model, chosen), *notes_on_tolerance(model, limits),
+            *question_of_flutes(case, max([0.0, *(pocket.axial_depth for pocket in pockets)])),
         ),
         zero_order=zero_order,
         pockets=pockets,

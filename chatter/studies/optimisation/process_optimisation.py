@@ -10,6 +10,7 @@ from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
+from chatter.description.questioned import question_of_flutes
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import exclusions
 from chatter.studies.optimisation.grid_search import (
@@ -125,7 +126,13 @@ def _found(case: Case, search: OptimumSearch, seed: int) -> Optimum:
         points=sum(grid_slice.kept.size for grid_slice in grid_slices),
         samples=len(drawn) if drawn else 0,
         seed=seed,
-        notes=(*search.model.notes, *_notes(case, limits, drawn)),
+        notes=(
+            *search.model.notes,
+            *_notes(case, limits, drawn),
+            *question_of_flutes(
+                case, max((one.point.axial_depth for one in candidates), default=0.0)
+            ),
+        ),
     )
     search.end()
     return result

@@ -263,3 +263,13 @@ def test_examples_and_schema(tmp_path):
     assert (tmp_path / "mine/case.toml").exists()
     refused(run("examples", "slotting", "--out", tmp_path / "mine"), "mine")
     assert json.loads(run("schema").stdout)["properties"]["tool"]
+
+
+def test_a_value_on_the_command_line_mends_the_one_of_the_file(tmp_path):
+    path = write(tmp_path, GOOD.replace('diameter = "', 'diameter = "many ', 1))
+    refused(run("check", path), "tool.diameter")
+    mended = run("check", path, "--set", "tool.diameter=12 mm")
+    assert mended.exit_code == 0, mended.output
+    # what is still wrong is told, with the file
+    refused(run("check", path, "--set", "cut.axial_depth=1 mm"), "case.toml: tool.diameter")
+    refused(run("check", path, "--set", "cut.axail_depth=1 mm"), "case.toml: cut.axail_depth")

@@ -7,6 +7,7 @@ import pytest
 import chatter
 from chatter.description.case import loads
 from chatter.description.questioned import (
+    question_of_flutes,
     question_of_spectral_radius,
     questions,
     stick_out_compliance,
@@ -22,6 +23,8 @@ from tests.chatter.simulation.test_worn_flank import CASE
         ("material.Ktc", "1.9 MPa", "is 1.9 MPa meant?"),
         # 16 mm at 140000 rad/s
         ("cut.spindle_speed", "140000 rad/s", "is 6.72e+04 m/min meant?"),
+        # bare numbers are metres
+        ("cut.axial_depth", 0.5, "is 500 mm meant?"),
     ],
 )
 def test_a_value_in_the_wrong_unit_is_asked_about(path, value, words):
@@ -64,3 +67,13 @@ def test_growth_is_told_in_words():
     assert question_of_spectral_radius(2.0) == []
     (asked,) = question_of_spectral_radius(7e11)
     assert "7e+11 times from tooth to tooth" in asked
+
+
+def test_a_deep_limit_asks_for_the_length_of_the_flutes():
+    case = loads(CASE)
+    (asked,) = question_of_flutes(case, 3.5 * case.tool.diameter)
+    assert "56 mm are 3.5 diameters of the tool" in asked
+    assert question_of_flutes(case, 2.9 * case.tool.diameter) == []
+    assert question_of_flutes(case, math.inf) == []
+    known = case.patch({"tool.flute_length": "60 mm"})
+    assert question_of_flutes(known, 56e-3) == []
