@@ -62,17 +62,17 @@ def _question_of_depth(case: Case) -> list[str]:
     ]
 
 
-def question_of_flutes(case: Case, deepest: float) -> list[str]:
+def question_of_flutes(case: Case, depth: float) -> list[str]:
     """Sentence on a depth of a result, m, that the tool may not reach; none if its length is known.
 
-    `deepest` is a limit, a pocket or an optimum; a depth of inf is none.
+    `depth` is a limit, a pocket or an optimum; a depth of inf is none.
     """
     tool = case.tool
     stated = math.isfinite(tool.depth_that_tool_allows)
-    if stated or not math.isfinite(deepest) or deepest <= _COMMON_FLUTES * tool.diameter:
+    if stated or not math.isfinite(depth) or depth <= _COMMON_FLUTES * tool.diameter:
         return []
     return [
-        f"{1e3 * deepest:.3g} mm are {deepest / tool.diameter:.2g} diameters of the tool: state "
+        f"{1e3 * depth:.3g} mm are {depth / tool.diameter:.2g} diameters of the tool: state "
         "tool.flute_length, and no depth goes beyond it"
     ]
 
