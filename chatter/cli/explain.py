@@ -97,6 +97,7 @@ def _print_explanation(result: Explanation) -> None:
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
+    _print_errors_by_kind(summary)
     if summary["next_measurement"] is not None:
         print_line(in_words_next(summary["next_measurement"]))
     signature = summary["signature"]
@@ -107,6 +108,18 @@ def _print_explanation(result: Explanation) -> None:
         print_line(f"residual dependence: {dependence['description']}")
     print_line("residual of the refitted case:")
     print_diagnostics(signature["refitted"])
+
+
+def _print_errors_by_kind(summary: dict[str, Any]) -> None:
+    """Print the errors of a set-up by kind of measurement."""
+    names = ("noise_floor", "declared", "before", "after", "holdout_before", "holdout_after")
+    rows = [
+        [kind, *("" if error[name] is None else f"{error[name]:.4g}" for name in names)]
+        for kind, error in summary.get("error_by_kind", {}).items()
+    ]
+    if rows:
+        columns = ["kind", *(name.replace("_", " ") for name in names)]
+        print_table("error by kind of measurement", columns, rows)
 
 
 def _print_refitted(summary: dict[str, Any]) -> None:

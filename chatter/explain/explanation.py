@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -28,7 +29,7 @@ from chatter.explain.errors import (
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.kinds.stability import Stability
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
-from chatter.explain.measurement import Measurement
+from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
 from chatter.explain.next_measurement.proposal import next_measurement
 from chatter.explain.prediction import Predictions, kept_predictions
@@ -124,7 +125,7 @@ class Explanation:
             # what helps, but is not beyond doubt
             "partial": self._effects(self.helping),
             "out_of_tolerance": self._out_of_tolerance(),
-            "error": self._errors(),
+            **self._errors(),
             "candidates": self._candidates(),
             "error_by_channel": self.before_after.summary(),
             "signature": {
@@ -188,15 +189,30 @@ class Explanation:
         return lobes_before_after(self.measurement, cases, added)
 
     def _errors(self) -> dict[str, Any]:
-        runs, holdout = self.measurement.runs, self.found.split.holdout
+        """Errors over all runs, and of a set-up by kind of measurement as well."""
+        found: dict[str, Any] = {"error": self._errors_of(self.measurement.runs)}
+        if self.measurement.parts:
+            found["error_by_kind"] = {
+                kind: self._errors_of([run for run in self.measurement.runs if run.kind == kind])
+                for kind in self.measurement.kinds
+            }
+        return found
+
+    def _errors_of(self, runs: Sequence[Run]) -> dict[str, Any]:
+        """Errors of the models over some runs."""
+        names = {run.name for run in runs}
+        holdout = [run for run in self.found.split.holdout if run.name in names]
         signature = self.refitted_signature
         if self.adds_effects:
             signature = self.repaired_signature
-        floor = self.predictions.kind.noise_floor(signature.residual.parts)
+        parts = [one for one in signature.residual.parts if one.run.name in names]
+        floor = self.predictions.kind.noise_floor(parts)
         fitted = list(self._of_fitted.values())
 
-        def error(case: Case, some=runs) -> float | None:
-            return finite_or_none(overall(errors_of(case, self.predictions, some)))
+        def error(case: Case, some: Sequence[Run] = runs) -> float | None:
+            # of a kind of one run none is held out
+            errors = errors_of(case, self.predictions, some)
+            return finite_or_none(overall(errors)) if errors else None
 
         return {
             "metric": "nrmse",

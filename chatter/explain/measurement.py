@@ -28,6 +28,7 @@ class Run:
     cut_time: float = 0.0  # that the tool had cut before the run, s
     condition: str = ""  # of FRFs
     direction: str = ""  # of FRFs
+    axis: str = ""  # of the machine, that moves; where it is named
     #: (n,), 1 for samples that count, 0 for those that the checks excluded
     usable: NDArray[np.float64] | None = None
     #: of samples by channel, 1 at the most
@@ -88,7 +89,7 @@ class Run:
 class Measurement:
     """What was measured, and the case that was declared about it."""
 
-    kind: str  # "milling", "axis", "stability", "frf", "set-up"
+    kind: str  # "milling", "axis", "stability", "frf", "drive", "set-up"
     title: str
     folder: Path
     case: Case

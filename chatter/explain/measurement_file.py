@@ -13,7 +13,7 @@ from chatter.description.errors import InputError
 from chatter.description.file_name import is_file_name
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
-from chatter.explain.kinds.kind_list import KINDS, OF_PARTS
+from chatter.explain.kinds.kind_list import KINDS, OF_PARTS, ON_MACHINE
 from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.limits import limits_of
@@ -21,7 +21,7 @@ from chatter.explain.records.description import RecordDescription, record_of
 from chatter.io.signals import Signals, read_signals
 
 #: keys of [[run]] that are no override of the case
-OWN_KEYS = ("file", "from", "to", "condition", "direction", "excite", "read", "title")
+OWN_KEYS = ("file", "from", "to", "condition", "direction", "excite", "read", "axis", "title")
 KEYS = (
     "title",
     "kind",
@@ -65,6 +65,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if declared.on_machine:
         # read once, not at every prediction
         declared = declared.with_machine(declared.machine_file())
+    name = _kind_on(declared, name)
     title = str(content.get("title", path.parent.name))
     whole = Measurement(name, title, path.parent, declared, ())
     tolerances = _tolerances(path, content.get("tolerance", {}), declared)
@@ -73,6 +74,13 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if name == SetUp.name:
         return _set_up(path, whole, content)
     return _of_one_kind(path, "", whole, content)
+
+
+def _kind_on(declared: Case, kind: str) -> str:
+    """Kind of a measurement of a case: an axis without [axis] is one of its machine."""
+    if declared.on_machine and declared.axis is None:
+        return ON_MACHINE.get(kind, kind)
+    return kind
 
 
 def _only_run(path: Path, case: str | Path | Case | None) -> Measurement:
@@ -117,6 +125,7 @@ def _set_up(path: Path, whole: Measurement, content: Mapping[str, Any]) -> Measu
                 f"{path}: {where}kind: {formatted(kind)} is none of {', '.join(OF_PARTS)}"
             )
         title = str(entry.get("title", kind))
+        kind = _kind_on(whole.case, kind)
         own = replace(whole, kind=kind, title=title)
         parts.append(_of_one_kind(path, where, own, entry))
     if not parts:
@@ -262,7 +271,8 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     name = file.name
     if "from" in entry or "to" in entry:
         name, signals = _window(where, name, entry, signals)
-    return Run(name, overrides, signals, cut_time, condition, direction)
+    axis = _axis(where, entry, declared)
+    return Run(name, overrides, signals, cut_time, condition, direction, axis)
 
 
 def _window(
@@ -304,6 +314,17 @@ def _direction(where: str, entry: Mapping[str, Any]) -> str:
     if excite is None:
         raise InputError(f'{where}: excite is missing; read = "{read}" needs it')
     return f"{excite if read is None else read}, {excite}"
+
+
+def _axis(where: str, entry: Mapping[str, Any], declared: Case) -> str:
+    """Axis of the machine that a run moves; InputError if there is none of that name."""
+    if "axis" not in entry:
+        return ""
+    known = list(declared.machine_file().axis) if declared.on_machine else []
+    if entry["axis"] not in known:
+        there = ", ".join(known) or "none, as the case is on no machine"
+        raise InputError(f"{where}: axis: {formatted(entry['axis'])} is none; there are {there}")
+    return str(entry["axis"])
 
 
 def _path_of(where: str, key: str, declared: Case) -> str:

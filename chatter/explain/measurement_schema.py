@@ -22,6 +22,7 @@ _OWN: dict[str, dict[str, Any]] = {
         "examples": ["tool:x"],
         "description": "of an FRF of a machine: point and direction of the force",
     },
+    "axis": {"examples": ["Y"], "description": "of a move: axis of the machine"},
     "read": {"description": "the same of the response; by default where it is excited"},
     "title": {"description": "free text"},
 }

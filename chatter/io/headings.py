@@ -20,6 +20,8 @@ DIMENSIONS = {
     "z": "length",
     "command": "length",
     "position": "length",
+    "scale": "length",
+    "torque": "torque",
     "velocity": "velocity",
     "force": "force",
     "spindle_speed": "angular_speed",

@@ -20,7 +20,7 @@ from chatter.explain.measurement import Measurement
 _MOST_JOINTS, _MOST_AXES = 24, 6
 #: a factor that is tried, and its bounds
 _FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
-_STARTS, _STARTS_OF_CUTS = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
+_STARTS, _STARTS_IN_TIME = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
 #: friction that is tried at two parts, over that of typical ones: what holds at rest is sharp
 _SHARES, _VISCOUS_SHARE = (0.05, 0.3, 1.0, 2.0, 3.5, 6.0, 12.0), 0.05
 #: keys of drives and loops that say how stiff they are
@@ -79,7 +79,7 @@ def _of_loops(file: MachineFile, keys: Sequence[str]) -> list[Joint]:
 class _Factor(Effect):
     """Values of the machine that are a factor off what is declared."""
 
-    kinds = ("frf", "milling")
+    kinds = ("frf", "milling", "drive")
     most = _MOST_JOINTS
 
     def __init__(self, number: int = 0) -> None:
@@ -118,10 +118,10 @@ class _Factor(Effect):
     def starts(self, measurement: Measurement) -> list[Values]:
         """From a quarter to four times: a resonance must be met before a step leads to it.
 
-        A cut is simulated from few of them.
+        A cut and a move in time are simulated from few of them.
         """
         (one,) = self.parameters(measurement)
-        factors = _STARTS_OF_CUTS if "milling" in measurement.kinds else _STARTS
+        factors = _STARTS if "frf" in measurement.kinds else _STARTS_IN_TIME
         return [{one.name: float(factor)} for factor in factors]
 
     def patch(self, case: Case, values: Values) -> Patch:
@@ -161,7 +161,7 @@ class ControlDelay(_Factor):
     name = "control_delay"
     label = "time constant of a control loop"
     help = "a control loop of the machine is slower or faster than declared"
-    kinds = ("frf",)
+    kinds = ("frf", "drive")
 
     def listed(self, file: MachineFile) -> Sequence[Joint]:
         """Loops of all axes."""
@@ -201,7 +201,7 @@ class AxisFriction(Effect):
     name = "axis_friction"
     label = "friction of an axis"
     help = "guides or motor of an axis of the machine rub: a spring at rest, a damper in motion"
-    kinds = ("frf", "milling")
+    kinds = ("frf", "milling", "drive")
     parts: tuple[RubbingPart, ...] = (GUIDE,)
 
     def __init__(self, number: int = 0) -> None:

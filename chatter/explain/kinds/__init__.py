@@ -7,6 +7,7 @@ kind            `Kind`: everything that is asked of a kind, with defaults
 milling         forces and displacements of cuts, by the time-domain engine
 axis            force of a feed axis along its measured motion
 axis_record     smoothed motion, weights and noise of the record of a move
+drive           torque and position of an axis of a machine, by the machine in time
 stability       cutting tests judged stable or chatter
 frf             receptances at the tool point, idle and in the cut
 kind_list       the list: where a new kind joins

@@ -106,10 +106,13 @@ class FrequencyResponse(Kind):
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Modal parameters, or what of the machine is declared as uncertain."""
-        uncertain = [
-            path for path in measurement.case.deviations() if path.startswith(MACHINE_PATH)
-        ]
-        return with_priors(measurement, [*structural_paths(measurement.case), *uncertain])
+        case = measurement.case
+        return with_priors(measurement, [*structural_paths(case), *machine_paths(case)])
+
+
+def machine_paths(case: Case) -> list[str]:
+    """Paths of what of the machine of a case is declared with a standard deviation."""
+    return [path for path in case.deviations() if path.startswith(MACHINE_PATH)]
 
 
 def read_and_excited(run: Run) -> tuple[str, str]:

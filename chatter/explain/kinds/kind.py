@@ -165,6 +165,14 @@ class Kind(ABC):
         del case, run
         return {}
 
+    def cheaper_runs(self, case: Case, runs: Sequence[Run]) -> Sequence[Run]:
+        """Runs by which candidates are looked at first, as the others cost far more; none.
+
+        The case is the declared one.
+        """
+        del case, runs
+        return ()
+
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with weights by a case that was found; unchanged by default."""
         return measurement

@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.fitting import Parameter
+from chatter.explain.kinds.frf import FrequencyResponse
 from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.channel_residual import ChannelResidual
@@ -102,6 +103,11 @@ class SetUp(Kind):
     def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
         """Overrides by which a run costs its kind less to predict."""
         return self._of(run).coarse(case, run)
+
+    def cheaper_runs(self, case: Case, runs: Sequence[Run]) -> Sequence[Run]:
+        """FRFs of a machine, beside what is simulated in time."""
+        cheap = [run for run in runs if run.kind == FrequencyResponse.name]
+        return cheap if case.on_machine and len(cheap) < len(runs) else ()
 
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with the weights of its kinds by a case that was found."""

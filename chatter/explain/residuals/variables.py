@@ -87,6 +87,8 @@ def reported_unit(channel: str) -> tuple[str, float]:
         return _MOTIONS[channel]
     if channel == "spindle_power":
         return "W", 1.0
+    if channel == "torque":
+        return "N m", 1.0
     return ("N", 1.0) if channel[0] in "Ff" else ("µm", 1e6)
 
 

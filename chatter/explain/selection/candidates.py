@@ -20,9 +20,10 @@ from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import Fit, Matrix
 from chatter.explain.measurement import Run
+from chatter.explain.selection.cheaper_runs import worth_a_look
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.joint_steps import JointStep, joint_steps
-from chatter.explain.selection.linearised_step import LinearisedStep, linearised
+from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split
@@ -70,10 +71,16 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
     screened, runs = problem.screened(now, split.fitted)
     steps: list[tuple[Effect, LinearisedStep]] = []
-    for index, effect in enumerate(effects):
-        share = _LINEARISED_SHARE * index / len(effects)
+    looked_at = worth_a_look(screened, now, runs, effects)
+    for index, (effect, begins) in enumerate(looked_at):
+        share = _LINEARISED_SHARE * index / len(looked_at)
         progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        steps.append((effect, linearised(screened, effect, now, runs)))
+        step = (
+            linearised(screened, effect, now, runs)
+            if begins is None
+            else linearised_from(screened, effect, now, runs, begins)
+        )
+        steps.append((effect, step))
     chosen = _chosen(problem, steps)
     hopeful = [entry for entry in chosen if _may_be_significant(problem, entry[1], now)]
     # one at the least, so that the report can say how far nothing helps

@@ -39,6 +39,41 @@ class LinearisedStep(NamedTuple):
         return np.column_stack([self.nuisance, self.own])
 
 
+def linearised_from(
+    problem: Problem,
+    effect: Effect,
+    now: Fit,
+    runs: Sequence[Run],
+    begins: Sequence[Mapping[str, float]],
+) -> LinearisedStep:
+    """Best of the linearised steps from values of all parameters, by name, and the step after it.
+
+    The nuisance parameters move along by the Jacobian that is known of them.
+    """
+    trial = problem.with_effect(effect)
+    added = trial.parameters()[len(now.parameters) :]
+    return _best_of(trial, added, now, runs, [{**one, **now.by_name} for one in begins])
+
+
+def _best_of(
+    trial: Problem,
+    added: Sequence[Parameter],
+    now: Fit,
+    runs: Sequence[Run],
+    begins: Sequence[dict[str, float]],
+) -> LinearisedStep:
+    """Best of the steps from some values, and of those that follow on the best."""
+
+    def from_values(values: dict[str, float]) -> LinearisedStep:
+        return _one_step(trial, added, values, now, runs)
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        steps = sorted(pool.map(from_values, begins), key=lambda step: step.cost)
+        followed = pool.map(lambda step: from_values(step.values), steps[:FOLLOWED_STARTS])
+        best = min([*followed, steps[0]], key=lambda step: step.cost)
+    return best._replace(promised=max(step.promised for step in steps))
+
+
 def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:
     """Best of the linearised steps from the starts of an effect and those that are proposed.
 
@@ -52,27 +87,18 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
         own = {f"{effect.name}.{key}": value for key, value in start.items()}
         return {one.name: one.start for one in parameters} | now.by_name | own
 
-    def from_values(values: dict[str, float]) -> LinearisedStep:
-        return _one_step(trial, added, values, now, runs)
-
     measured = problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds)
     predicted = problem.predicted(now.by_name, runs)
-    with ThreadPoolExecutor(WORKERS) as pool:
-        begins = [values_at(start) for start in effect.starts(problem.measured_by(effect))]
-        if len(begins) > SCREENED_STARTS:
-            amounts = [
-                one for one in added if one.name.partition(".")[2] in effect.nothing(measured)
-            ]
-            secants = _Secants(trial, now, runs, amounts)
+    begins = [values_at(start) for start in effect.starts(problem.measured_by(effect))]
+    if len(begins) > SCREENED_STARTS:
+        amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
+        secants = _Secants(trial, now, runs, amounts)
+        with ThreadPoolExecutor(WORKERS) as pool:
             costs = list(pool.map(secants.cost, begins))
-            ranked = sorted(range(len(begins)), key=lambda index: costs[index])
-            begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
-        begins += [values_at(start) for start in effect.proposed(measured, predicted)]
-        begins = begins or [values_at({})]
-        steps = sorted(pool.map(from_values, begins), key=lambda step: step.cost)
-        followed = pool.map(lambda step: from_values(step.values), steps[:FOLLOWED_STARTS])
-        best = min([*followed, steps[0]], key=lambda step: step.cost)
-    return best._replace(promised=max(step.promised for step in steps))
+        ranked = sorted(range(len(begins)), key=lambda index: costs[index])
+        begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
+    begins += [values_at(start) for start in effect.proposed(measured, predicted)]
+    return _best_of(trial, added, now, runs, begins or [values_at({})])
 
 
 class _Secants:

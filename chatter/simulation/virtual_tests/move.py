@@ -146,6 +146,22 @@ def move_axes(
     machine runs away.
     """
     refuse_unstable_control(machine, step)
+    return axes_moved(name, machine, step, plan, tool, progress, along)
+
+
+def axes_moved(
+    name: str,
+    machine: Machine,
+    step: float,
+    plan: MovePlan,
+    tool: NDArray[np.float64] | None = None,
+    progress: Progress = no_progress,
+    along: MachinesAlong | None = None,
+) -> MoveResult:
+    """Move the axes of a machine as `move_axes` does, without asking first for stable loops.
+
+    A machine whose loops are unstable runs away: RunError.
+    """
     motions = [rigid_motion(machine, {axis: 1.0}) for axis in plan.axes]
     points = _set_points(machine, plan, step)
     rows = (

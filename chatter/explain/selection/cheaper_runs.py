@@ -1,0 +1,103 @@
+"""Candidates that are worth a look, by the runs of a set-up that cost little to predict.
+
+An FRF of a machine takes milliseconds, a cut or a move in time a second. What the FRFs ask for is
+found by them and judged by all runs; what they exclude is not simulated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.explain.criteria import NEAR_NOISE, PROMISING
+from chatter.explain.effects.effect import Effect
+from chatter.explain.fitting import Fit
+from chatter.explain.measurement import Run
+from chatter.explain.selection.linearised_step import LinearisedStep, linearised
+from chatter.explain.selection.problem import Problem
+
+#: candidates that are looked at in all runs where the cheaper ones ask for something
+_LOOKED_AT = 8
+#: size of an amount up to which it is nothing, and to which it is to be known for that
+_NOTHING = 0.2
+
+
+class WorthALook(NamedTuple):
+    """A candidate, and where it begins; from its own starts where nothing is known."""
+
+    effect: Effect
+    begins: Sequence[Mapping[str, float]] | None = None
+
+
+def worth_a_look(
+    problem: Problem, now: Fit, runs: Sequence[Run], effects: Sequence[Effect]
+) -> list[WorthALook]:
+    """Effects that may be missing by the cheaper of some runs, to which the fit is.
+
+    All of them where no runs are cheaper than others.
+    """
+    cheap = problem.kind.cheaper_runs(problem.measurement.case, runs)
+    if not cheap:
+        return [WorthALook(effect) for effect in effects]
+    part = _fit_to(problem, now, runs, cheap)
+    kinds = {run.kind for run in cheap}
+    shown = [one for one in effects if kinds & set(one.kinds)]
+    steps = [(one, linearised(problem, one, part, cheap)) for one in shown]
+    if part.cost > NEAR_NOISE**2 * part.residuals.size:
+        asked = _asked_for(problem, part, steps)
+        if asked:
+            return asked
+    others = [WorthALook(one) for one in effects if not kinds & set(one.kinds)]
+    return others + [
+        WorthALook(effect, [step.values])
+        for effect, step in steps
+        if not _is_excluded(problem, effect, step)
+    ]
+
+
+def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run]) -> Fit:
+    """Fit with the residuals of some of the runs alone."""
+    chosen = {run.name for run in cheap}
+    rows: NDArray[np.bool_] = np.concatenate(
+        [np.full(problem.count([run]), run.name in chosen) for run in runs]
+    )
+    return replace(now, residuals=now.residuals[rows], jacobian=now.jacobian[rows])
+
+
+def _asked_for(
+    problem: Problem, part: Fit, steps: Sequence[tuple[Effect, LinearisedStep]]
+) -> list[WorthALook]:
+    """Candidates that may take a significant part of the residual away, the best first."""
+    fixed, share = problem.kind.least_gain
+    least = PROMISING * (fixed + share * part.residuals.size)
+    gaining = [
+        (effect, step)
+        for effect, step in steps
+        if max(step.promised, part.cost - step.cost) >= least
+    ]
+    gaining.sort(key=lambda entry: entry[1].cost)
+    return [WorthALook(effect, [step.values]) for effect, step in gaining[:_LOOKED_AT]]
+
+
+def _is_excluded(problem: Problem, effect: Effect, step: LinearisedStep) -> bool:
+    """Whether all amounts of an effect are known to be next to nothing."""
+    nothing = effect.nothing(problem.measured_by(effect))
+    if not nothing:
+        return False
+    count = step.nuisance.shape[1]
+    jacobian = step.jacobian
+    # parameters count in sizes: a prior, or next to nothing where there is none
+    held = [1.0] * count + [1.0 if one.prior else 1e-6 for one in step.added]
+    spread = np.linalg.pinv(jacobian.T @ jacobian + np.diag(held), hermitian=True)
+    for index, one in enumerate(step.added):
+        key = one.name.partition(".")[2]
+        if key not in nothing:
+            continue
+        away = abs(step.values[one.name] - nothing[key]) / one.size
+        if max(away, np.sqrt(spread[count + index, count + index])) > _NOTHING:
+            return False
+    return True
