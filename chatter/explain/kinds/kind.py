@@ -166,7 +166,7 @@ class Kind(ABC):
         return {}
 
     def cheaper_runs(self, case: Case, runs: Sequence[Run]) -> Sequence[Run]:
-        """Runs by which candidates are looked at first, as the others cost far more; none.
+        """Runs by which candidates are screened first, as the others cost far more; none.
 
         The case is the declared one.
         """

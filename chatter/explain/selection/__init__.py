@@ -8,7 +8,7 @@ split               runs fitted, and runs held out
 evidence            evidence of a model by Laplace's and Whittle's approximations
 significance        whether a candidate gains more than chance gives
 candidates          effects tried on top of others
-cheaper_runs        candidates worth a look by the runs that cost little to predict
+cheaper_runs        candidates screened by the runs that cost little to predict
 joint_steps         pairs that may pay together though neither does alone
 path                effects added one by one or in pairs, and tried again
 established         which effects are certain though something is left, and which are none

@@ -20,7 +20,7 @@ from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import Fit, Matrix
 from chatter.explain.measurement import Run
-from chatter.explain.selection.cheaper_runs import worth_a_look
+from chatter.explain.selection.cheaper_runs import screened_candidates
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.joint_steps import JointStep, joint_steps
 from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
@@ -71,9 +71,9 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
     screened, runs = problem.screened(now, split.fitted)
     steps: list[tuple[Effect, LinearisedStep]] = []
-    looked_at = worth_a_look(screened, now, runs, effects)
-    for index, (effect, begins) in enumerate(looked_at):
-        share = _LINEARISED_SHARE * index / len(looked_at)
+    screened_effects = screened_candidates(screened, now, runs, effects)
+    for index, (effect, begins) in enumerate(screened_effects):
+        share = _LINEARISED_SHARE * index / len(screened_effects)
         progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
         step = (
             linearised(screened, effect, now, runs)

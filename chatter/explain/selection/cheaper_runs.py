@@ -1,4 +1,4 @@
-"""Candidates that are worth a look, by the runs of a set-up that cost little to predict.
+"""Candidates screened by the runs of a set-up that cost little to predict.
 
 An FRF of a machine takes milliseconds, a cut or a move in time a second. What the FRFs ask for is
 found by them and judged by all runs; what they exclude is not simulated.
@@ -21,28 +21,28 @@ from chatter.explain.selection.linearised_step import LinearisedStep, linearised
 from chatter.explain.selection.problem import Problem
 
 #: candidates that are looked at in all runs where the cheaper ones ask for something
-_LOOKED_AT = 8
+_MOST_SCREENED = 8
 #: size of an amount up to which it is nothing, and to which it is to be known for that
 _NOTHING = 0.2
 
 
-class WorthALook(NamedTuple):
-    """A candidate, and where it begins; from its own starts where nothing is known."""
+class ScreenedCandidate(NamedTuple):
+    """A candidate that passed, and where it begins; from its own starts where nothing is known."""
 
     effect: Effect
     begins: Sequence[Mapping[str, float]] | None = None
 
 
-def worth_a_look(
+def screened_candidates(
     problem: Problem, now: Fit, runs: Sequence[Run], effects: Sequence[Effect]
-) -> list[WorthALook]:
+) -> list[ScreenedCandidate]:
     """Effects that may be missing by the cheaper of some runs, to which the fit is.
 
     All of them where no runs are cheaper than others.
     """
     cheap = problem.kind.cheaper_runs(problem.measurement.case, runs)
     if not cheap:
-        return [WorthALook(effect) for effect in effects]
+        return [ScreenedCandidate(effect) for effect in effects]
     part = _fit_to(problem, now, runs, cheap)
     kinds = {run.kind for run in cheap}
     shown = [one for one in effects if kinds & set(one.kinds)]
@@ -51,9 +51,9 @@ def worth_a_look(
         asked = _asked_for(problem, part, steps)
         if asked:
             return asked
-    others = [WorthALook(one) for one in effects if not kinds & set(one.kinds)]
+    others = [ScreenedCandidate(one) for one in effects if not kinds & set(one.kinds)]
     return others + [
-        WorthALook(effect, [step.values])
+        ScreenedCandidate(effect, [step.values])
         for effect, step in steps
         if not _is_excluded(problem, effect, step)
     ]
@@ -70,7 +70,7 @@ def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run
 
 def _asked_for(
     problem: Problem, part: Fit, steps: Sequence[tuple[Effect, LinearisedStep]]
-) -> list[WorthALook]:
+) -> list[ScreenedCandidate]:
     """Candidates that may take a significant part of the residual away, the best first."""
     fixed, share = problem.kind.least_gain
     least = PROMISING * (fixed + share * part.residuals.size)
@@ -80,7 +80,7 @@ def _asked_for(
         if max(step.promised, part.cost - step.cost) >= least
     ]
     gaining.sort(key=lambda entry: entry[1].cost)
-    return [WorthALook(effect, [step.values]) for effect, step in gaining[:_LOOKED_AT]]
+    return [ScreenedCandidate(effect, [step.values]) for effect, step in gaining[:_MOST_SCREENED]]
 
 
 def _is_excluded(problem: Problem, effect: Effect, step: LinearisedStep) -> bool:
