@@ -112,7 +112,7 @@ def _top(found: Optimum) -> float:
 
 def _fill(axes: Axes, found: Optimum, top: float) -> None:
     """Fill stable and unstable depths; over them where all limits are kept."""
-    stable, grid_slice = found.grid_slice.stable, found.grid_slice
+    stable = found.grid_slice.stable
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
     passed = np.array([np.searchsorted(c, depth * 1e-3) % 2 for c in stable.crossings]).T
     axes.pcolormesh(
@@ -120,22 +120,29 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
         cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]), vmin=0, vmax=1,
         shading="nearest", rasterized=True, zorder=0.4,
     )  # fmt: skip
-    # the grid of the slice is coarser than the limits: nothing beyond them counts as kept
-    row = _nearest(grid_slice.depths * 1e3, depth)
-    column = _nearest(grid_slice.speeds, stable.speeds)
-    kept = grid_slice.feasible[np.ix_(row, column)] & (passed == 0)
-    if kept.any():
-        axes.pcolormesh(
-            rpm(stable.speeds), depth, np.ma.masked_where(~kept, np.ones(kept.shape)),
-            cmap=ListedColormap([_KEPT_FILL]), shading="nearest", rasterized=True, zorder=0.5,
-        )  # fmt: skip
+    kept = found.grid_slice.feasible_between(found.limits, depth * 1e-3) & (passed == 0)
+    _fill_stretches(axes, rpm(stable.speeds), depth, kept)
     first = [found[0] * 1e3 if len(found) else np.nan for found in stable.crossings]
     axes.plot(rpm(stable.speeds), first, color=style.BLUE, linewidth=1.2, zorder=1.5)
 
 
-def _nearest(values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Index of the nearest of some ascending values to each wanted one."""
-    return np.abs(values[:, None] - wanted[None, :]).argmin(axis=0)
+def _fill_stretches(axes: Axes, speed: np.ndarray, depth: np.ndarray, kept: np.ndarray) -> None:
+    """Fill what is kept (depths, speeds), from speed to speed where as many stretches go on."""
+    edges = np.diff(np.pad(kept, ((1, 1), (0, 0))).astype(np.int8), axis=0)
+    bounds = np.append(depth - 0.5 * (depth[1] - depth[0]), depth[-1])
+    low, high = ([bounds[np.flatnonzero(column == side)] for column in edges.T] for side in (1, -1))
+    counts = np.array([len(one) for one in low])
+    borders = np.flatnonzero(np.diff(counts)) + 1
+    for run in np.split(np.arange(speed.size), borders):
+        for stretch in range(counts[run[0]]):
+            axes.fill_between(
+                speed[run],
+                [low[column][stretch] for column in run],
+                [high[column][stretch] for column in run],
+                color=_KEPT_FILL,
+                linewidth=0.0,
+                zorder=0.5,
+            )
 
 
 def _levels(rate: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from chatter.description.arrays import Array, BooleanArray
 from chatter.description.case import Case
@@ -57,6 +58,37 @@ class SpeedDepthSlice:
     def feasible(self) -> BooleanArray:
         """Where (m, n) all of them are."""
         return np.logical_and.reduce(list(self.satisfied.values()))
+
+    def feasible_between(self, limits: Limits, depths: Array) -> BooleanArray:
+        """Where all limits are held at depths (k,), m, and all speeds of `stable` (p,): (k, p).
+
+        Stability with its margins is known there; the usage of the other limits is interpolated.
+        """
+        margins = limits.depth_margin, limits.speed_margin
+        speeds = self.stable.speeds
+        inside = [is_inside(self.stable.within(speed, *margins), depths) for speed in speeds]
+        feasible = np.stack(inside, axis=1)
+        for usage in self.usage.values():
+            feasible &= self._usage_between(usage, depths, speeds) <= 1.0
+        return feasible
+
+    def _usage_between(self, usage: Array, depths: Array, speeds: Array) -> Array:
+        """Usage of a limit between the points of the grid; the nearest beside a point without."""
+        at = np.clip(depths, *self.depths[[0, -1]]), np.clip(speeds, *self.speeds[[0, -1]])
+        if min(self.depths.size, self.speeds.size) < 2:
+            rows, columns = _nearest(self.depths, depths), _nearest(self.speeds, speeds)
+            return usage[np.ix_(rows, columns)]
+        points = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1)
+        linear, nearest = (
+            RegularGridInterpolator((self.depths, self.speeds), usage, method=method)(points)
+            for method in ("linear", "nearest")
+        )
+        return np.where(np.isnan(linear), nearest, linear)
+
+
+def _nearest(values: Array, wanted: Array) -> Array:
+    """Index of the nearest of some ascending values to each wanted one."""
+    return np.abs(values[:, None] - wanted[None, :]).argmin(axis=0)
 
 
 def removal_rates(model: MillingModel, speeds: Array, depths: Array) -> Array:

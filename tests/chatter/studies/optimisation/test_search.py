@@ -55,6 +55,15 @@ def test_a_stiff_machine_is_limited_by_its_spindle_alone(limit, value, removal):
     assert found.best.verification.verified
     if limit == "max_torque":
         assert "speeds.to" in found.best.active
+    # the picture fills what is kept up to there at every speed, between the points of the grid too
+    depths = np.linspace(0.0, 4e-3, 2001)[1:]
+    kept = found.grid_slice.feasible_between(found.limits, depths)
+    speeds, cut = found.grid_slice.stable.speeds, found.grid_slice.case.cut
+    inside = (speeds > 9200.0 * RPM) & (speeds < 9600.0 * RPM)
+    area = 3.0 * cut.feed_per_tooth * cut.radial_depth * speeds[inside] / (2.0 * math.pi)
+    highest = 400.0 / 800e6 if limit == "max_power" else 0.5 * speeds[inside] / 800e6
+    tops = depths[kept[:, inside].sum(axis=0) - 1]
+    assert tops == pytest.approx(np.minimum(highest / area, 4e-3), rel=0.01)
 
 
 @pytest.fixture(scope="module")
