@@ -69,6 +69,9 @@ def plot_simulation(result: SimulationResult) -> Figure:
         draw_course(figure.add_subplot(bottom[0]), result)
         draw_feed(figure.add_subplot(bottom[1]), result)
         return figure
+    if result.finish.floor is not None and not result.finish.walls:
+        draw_profiles(figure.add_subplot(grid[3]), result)
+        return figure
     draw_wall(figure.add_subplot(bottom[0]), result)
     draw_profiles(figure.add_subplot(bottom[1]), result)
     return figure
@@ -267,31 +270,39 @@ def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
 def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     """Draw the displacement each time the first tooth is at +y."""
     axes.set_title("once a revolution", loc="left")
-    axes.set(xlabel="x [µm]", ylabel="y [µm]")
+    plane = moving_plane(result)
+    axes.set(xlabel=f"{'xyz'[plane[0]]} [µm]", ylabel=f"{'xyz'[plane[1]]} [µm]")
     style.finish(axes)
-    points = once_a_revolution(result)
+    points = once_a_revolution(result, plane)
     if not result.setup.modes or len(points) == 0:
         text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
         _say(axes, text)
         return
     half = len(points) // 2
-    axes.plot(
-        result.displacement[result.settled, 0] * 1e6, result.displacement[result.settled, 1] * 1e6,
-        color="#C9D6DF", linewidth=0.5, zorder=1,
-    )  # fmt: skip
+    orbit = result.displacement[result.settled][:, plane] * 1e6
+    axes.plot(*orbit.T, color="#C9D6DF", linewidth=0.5, zorder=1)
     axes.plot(*points[:half].T, ".", color=style.GREY, markersize=3, label="first half", zorder=2)
     axes.plot(*points[half:].T, "o", color=style.RED, markersize=3, label="last half", zorder=3)
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="best", fontsize=7.5, framealpha=0.85)
 
 
-def once_a_revolution(result: SimulationResult) -> Array:
-    """Displacement (revolutions, 2), µm, each time the first tooth is at +y."""
+def moving_plane(result: SimulationResult) -> tuple[int, int]:
+    """Axes of the displacement that a picture of two shows: x and y unless one of them rests."""
+    swing = np.ptp(result.displacement, axis=0) if len(result.rows) else np.zeros(3)
+    moving = [axis for axis in range(3) if swing[axis] > 0.0]
+    if len(moving) == 2:
+        return moving[0], moving[1]
+    return (0, 2) if moving == [2] else (0, 1)
+
+
+def once_a_revolution(result: SimulationResult, plane: tuple[int, int] = (0, 1)) -> Array:
+    """Displacement (revolutions, 2) along two axes, µm, each time the first tooth is at +y."""
     turns = np.arange(1, result.whole_revolutions + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))
     # steps divide a turn, so that a turn seldom ends between two rows, and then close to one
-    columns = result.displacement[:, :2].T
+    columns = result.displacement[:, plane].T
     motion = [np.interp(turns * _TURN, result.spindle_angle, column) for column in columns]
     return np.stack(motion, axis=1) * 1e6
 

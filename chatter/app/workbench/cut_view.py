@@ -24,7 +24,7 @@ from chatter.app.workbench.table_files import PageTable, as_html
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
-from chatter.plots.simulation import once_a_revolution, spectrum
+from chatter.plots.simulation import moving_plane, once_a_revolution, spectrum
 from chatter.plots.workpiece import plan_view
 from chatter.simulation.carving_history import removal_times
 from chatter.simulation.result import SimulationResult
@@ -249,10 +249,13 @@ class CutView:
         self._figures["spectrum"].y_range.update(
             start=1e-4 * (highest or 1.0), end=2.0 * (highest or 1.0)
         )
-        points = once_a_revolution(result)
+        plane = moving_plane(result)
+        points = once_a_revolution(result, plane)
         self.section.data = {"x": points[:, 0], "y": points[:, 1]}
+        section = self._figures["section"]
+        section.xaxis.axis_label, section.yaxis.axis_label = (f"{_AXES[k]} [µm]" for k in plane)
         settled = motion[rows][:: max(1, (rows.stop - rows.start) // _MOST_POINTS)]
-        self.orbit.data = {"x": settled[:, 0], "y": settled[:, 1]}
+        self.orbit.data = {"x": settled[:, plane[0]], "y": settled[:, plane[1]]}
 
     def _draw_workpiece(self, now: float) -> None:
         if self._removed is None:
