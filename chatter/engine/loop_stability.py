@@ -7,6 +7,7 @@ that run it, and its eigenvalues decide.
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,15 @@ class LoopMotion:
         return self.growth_rate <= _NEUTRAL
 
 
+class _DecisiveMotion(NamedTuple):
+    """Motion of the closed loops that decides on stability, before its frequency is looked for."""
+
+    growth: float  # 1/s
+    motion: NDArray[np.float64]  # (states,)
+    tables: StructureTables
+    drives: ControlledDrives
+
+
 def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     """Motion of the closed loops that decides on stability; None without control.
 
@@ -69,6 +79,22 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     InputError
         If a sample time does not fit the step.
     """
+    decisive = _decisive_motion(machine, step)
+    if decisive is None:
+        return None
+    return _described(machine, decisive)
+
+
+def _described(machine: Machine, decisive: _DecisiveMotion) -> LoopMotion:
+    """Motion with its frequency and the drive that feeds it."""
+    frequency, index = _strongest_frequency(
+        decisive.tables, decisive.drives, decisive.motion, decisive.growth
+    )
+    return LoopMotion(decisive.growth, frequency, machine.drives[index].name)
+
+
+def _decisive_motion(machine: Machine, step: float) -> _DecisiveMotion | None:
+    """Motion over a common period that grows fastest; None without control."""
     if not machine.drives:
         return None
     linear = replace(
@@ -95,8 +121,7 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     motion[~still] = vectors[:, decisive]
     time = period * step
     growth = math.log(max(abs(multipliers[decisive]), 1e-300)) / time
-    frequency, index = _strongest_frequency(tables, drives, motion.real, growth)
-    return LoopMotion(growth, frequency, machine.drives[index].name)
+    return _DecisiveMotion(growth, motion.real, tables, drives)
 
 
 def refuse_unstable_control(machine: Machine, step: float) -> None:
@@ -107,9 +132,10 @@ def refuse_unstable_control(machine: Machine, step: float) -> None:
     InputError
         Naming the drive, the frequency and the growth.
     """
-    motion = least_stable_motion(machine, step)
-    if motion is None or motion.stable:
+    decisive = _decisive_motion(machine, step)
+    if decisive is None or decisive.growth <= _NEUTRAL:
         return
+    motion = _described(machine, decisive)
     gains = {drive.name: drive.controller for drive in machine.drives}[motion.drive]
     raise InputError(
         f'axis "{motion.drive}": its control loop is unstable: a motion of about '

@@ -5,6 +5,7 @@ Forces are constant over a step (drives, friction), or vary linearly over it (lo
 state is a block of coordinates and pairs.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,9 @@ from dynamics.compiled import INLINED
 from dynamics.machine.blocks import blocks
 from dynamics.matrix_exponential import exact_step
 from dynamics.structure.linear_structure import LinearStructure
+
+#: exact steps kept, of as many structures
+_KEPT_STEPS = 8
 
 
 class StructureSteps(NamedTuple):
@@ -62,7 +66,8 @@ def structure_steps(
         Of the freedoms at the start, m/s (rad/s); at rest by default.
     """
     split = blocks(structure, np.asarray(ports, dtype=np.float64).reshape(-1, structure.size))
-    transition, first, second = _over_step(split.rate, split.dense, step)
+    rate = np.ascontiguousarray(split.rate)
+    transition, first, second = _over_step(rate.tobytes(), len(rate), split.dense, step)
     pairs = range(split.dense, len(split.rate), 2)
     entries = [(0, 0), (0, 1), (1, 0), (1, 1)]
     columns = {
@@ -98,11 +103,15 @@ def structure_steps(
     return steps
 
 
+@lru_cache(_KEPT_STEPS)
 def _over_step(
-    rate: NDArray[np.float64], dense: int, step: float
+    content: bytes, size: int, dense: int, step: float
 ) -> tuple[NDArray, NDArray, NDArray]:
-    """Transition, and state per held and per growing force, from exponentials of the blocks."""
-    size = len(rate)
+    """Transition, and state per held and per growing force, from exponentials of the blocks.
+
+    The rates (size, size) are given as bytes: a search asks for the same structure many times.
+    """
+    rate = np.frombuffer(content).reshape(size, size)
     results = tuple(np.zeros((size, size)) for _ in range(3))
     starts = [(0, dense)] if dense else []
     starts += [(start, 2) for start in range(dense, size, 2)]
@@ -111,6 +120,8 @@ def _over_step(
         over = exact_step(rate[part, part], np.eye(width), step)
         for result, block in zip(results, over, strict=True):
             result[part, part] = block
+    for result in results:
+        result.flags.writeable = False
     return results
 
 

@@ -17,7 +17,7 @@ from chatter.explain.criteria import NEAR_NOISE, PROMISING
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
-from chatter.explain.selection.linearised_step import LinearisedStep, linearised
+from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
 from chatter.explain.selection.problem import Problem
 
 #: candidates that are looked at in all runs where the cheaper ones ask for something
@@ -46,12 +46,12 @@ def screened_candidates(
     part = _fit_to(problem, now, runs, cheap)
     kinds = {run.kind for run in cheap}
     shown = [one for one in effects if kinds & set(one.kinds)]
-    steps = [(one, linearised(problem, one, part, cheap)) for one in shown]
     if part.cost > NEAR_NOISE**2 * part.residuals.size:
-        asked = _asked_for(problem, part, steps)
+        asked = _asked_for(problem, part, cheap, shown)
         if asked:
             return asked
     others = [ScreenedCandidate(one) for one in effects if not kinds & set(one.kinds)]
+    steps = [(one, _step_from_nothing(problem, one, part, cheap)) for one in shown]
     return others + [
         ScreenedCandidate(effect, [step.values])
         for effect, step in steps
@@ -69,9 +69,10 @@ def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run
 
 
 def _asked_for(
-    problem: Problem, part: Fit, steps: Sequence[tuple[Effect, LinearisedStep]]
+    problem: Problem, part: Fit, cheap: Sequence[Run], effects: Sequence[Effect]
 ) -> list[ScreenedCandidate]:
     """Candidates that may take a significant part of the residual away, the best first."""
+    steps = [(one, linearised(problem, one, part, cheap)) for one in effects]
     fixed, share = problem.kind.least_gain
     least = PROMISING * (fixed + share * part.residuals.size)
     gaining = [
@@ -81,6 +82,16 @@ def _asked_for(
     ]
     gaining.sort(key=lambda entry: entry[1].cost)
     return [ScreenedCandidate(effect, [step.values]) for effect, step in gaining[:_MOST_SCREENED]]
+
+
+def _step_from_nothing(
+    problem: Problem, effect: Effect, part: Fit, cheap: Sequence[Run]
+) -> LinearisedStep:
+    """Linearised step of an effect that begins where it is not there."""
+    nothing = effect.nothing(problem.measured_by(effect))
+    begin = {one.name: one.start for one in problem.with_effect(effect).parameters()}
+    begin |= {f"{effect.name}.{key}": value for key, value in nothing.items()}
+    return linearised_from(problem, effect, part, cheap, [begin])
 
 
 def _is_excluded(problem: Problem, effect: Effect, step: LinearisedStep) -> bool:

@@ -155,6 +155,27 @@ def taps(path, truth, seed=2) -> str:
     return text
 
 
+def cuts(path, truth, seed=3) -> str:
+    """Part of a set-up: forces and displacements of three short cuts, with noise of 2 %."""
+    random = np.random.default_rng(seed)
+    text = '[[part]]\nkind = "milling"\n'
+    for number, (speed, depth) in enumerate(((1500, 1.0), (1800, 0.8), (1300, 1.2))):
+        conditions = {"cut.spindle_speed": f"{speed} rpm", "cut.axial_depth": f"{depth} mm"}
+        made = chatter.simulate(truth.patch({**conditions, "simulation.revolutions": 3}))
+        time = np.arange(0.0, made.time[-1], 4e-4)
+        exact = [made.force[:, 0], made.force[:, 1], 1e6 * made.displacement[:, 0]]
+        rows = [time]
+        for values in exact:
+            signal = np.interp(time, made.time, values)
+            rows.append(signal + 0.02 * signal.std() * random.standard_normal(time.size))
+        head = "time [s],Fx [N],Fy [N],x [um]"
+        file = f"cut{number}.csv"
+        np.savetxt(path / file, np.array(rows).T, delimiter=",", header=head, comments="")
+        text += f'[[part.run]]\nfile = "{file}"\nspindle_speed = "{speed} rpm"\n'
+        text += f'axial_depth = "{depth} mm"\n'
+    return text
+
+
 def set_up(path, *parts) -> None:
     text = 'kind = "set-up"\ncase = "case.toml"\n' + "".join(parts)
     (path / "measurement.toml").write_text(text, encoding="utf-8")
