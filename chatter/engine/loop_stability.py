@@ -59,7 +59,7 @@ class LoopMotion:
 class _DecisiveMotion(NamedTuple):
     """Motion of the closed loops that decides on stability, before its frequency is looked for."""
 
-    growth: float  # 1/s
+    growth_rate: float  # 1/s
     motion: NDArray[np.float64]  # (states,)
     tables: StructureTables
     drives: ControlledDrives
@@ -88,9 +88,9 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
 def _described(machine: Machine, decisive: _DecisiveMotion) -> LoopMotion:
     """Motion with its frequency and the drive that feeds it."""
     frequency, index = _strongest_frequency(
-        decisive.tables, decisive.drives, decisive.motion, decisive.growth
+        decisive.tables, decisive.drives, decisive.motion, decisive.growth_rate
     )
-    return LoopMotion(decisive.growth, frequency, machine.drives[index].name)
+    return LoopMotion(decisive.growth_rate, frequency, machine.drives[index].name)
 
 
 def _decisive_motion(machine: Machine, step: float) -> _DecisiveMotion | None:
@@ -133,7 +133,7 @@ def refuse_unstable_control(machine: Machine, step: float) -> None:
         Naming the drive, the frequency and the growth.
     """
     decisive = _decisive_motion(machine, step)
-    if decisive is None or decisive.growth <= _NEUTRAL:
+    if decisive is None or decisive.growth_rate <= _NEUTRAL:
         return
     motion = _described(machine, decisive)
     gains = {drive.name: drive.controller for drive in machine.drives}[motion.drive]
