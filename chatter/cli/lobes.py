@@ -177,8 +177,12 @@ def _stable_below(depth: float) -> str:
 
 def _taken_off(diagram: StabilityDiagram) -> str:
     """What is taken off the lowest limit, and why."""
-    off = "".join(f"; less {one.share:.0%}: {one.name}" for one in diagram.neglected_at_all_speeds)
-    return off and f"{off} that set in at a chip of zero"
+    return "".join(
+        f"; less {one.share:.0%}: {one.name} that set in at a chip of zero"
+        if one.lowest > 0.0
+        else f"; {one.because}"
+        for one in diagram.neglected_at_all_speeds
+    )
 
 
 def _millimetres(depth: float | None, max_depth: float) -> str:

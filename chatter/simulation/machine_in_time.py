@@ -230,8 +230,9 @@ def _notes(cut: MachineCut, along: MachinesAlong | None) -> tuple[str, ...]:
     notes = list(cut.file.notes)
     if along is not None:
         travel = "; ".join(
-            f"{axis} from {1e3 * one[0]:g} to {1e3 * one[-1]:g} mm at {len(one)} positions"
+            f"{axis} from {first:g} to {last:g} mm at {len(one)} positions"
             for axis, one in zip(along.axes, along.positions, strict=True)
+            for first, last in [1e3 * one[[0, -1]] + 0.0]
         )
         notes.append(f"the structure changes as the axes travel: {travel}")
     if not cut.feeds:

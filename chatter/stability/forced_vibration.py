@@ -115,17 +115,16 @@ def _edge_forces(model: MillingModel, depth: float) -> tuple[NeglectedEffect, ..
     share = edge_force_onset(model, depth)
     if share < REPORTED_ONSET:
         return ()
-    note = (
-        f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
-        "a tooth is zero, and vibration shifts these moments: a stiffness of "
-        f"{share:.0%} of that of the chip, which linear methods leave out; the limit in the time "
-        "domain may be lower by up to as much (--method time-domain)"
-    )
     lowest = max(0.0, 1.0 - share)
     because = (
         f"edge forces that set in at a chip of zero may lower the limit by {share:.0%}"
         if lowest > 0.0
         else f"edge forces that set in at a chip of zero are {share:.3g} times as stiff as the chip"
+    )
+    note = (
+        f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
+        "a tooth is zero, and vibration shifts these moments, which linear methods leave out: "
+        f"{because}; the time domain decides (--method time-domain)"
     )
     return (NeglectedEffect(EDGE_FORCES, share, lowest, 1.0, because, note),)
 
