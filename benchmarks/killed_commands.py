@@ -5,16 +5,20 @@
 Every command runs undisturbed first. Then it is killed at a random moment of that time and begun
 again in the same folder, so many times; each time it then runs to its end, and what it has written
 has to be that of the undisturbed run, byte by byte. The folder begins empty at every second kill,
-at the others it holds what the last run left. The same is asked of two runs at once in one folder.
+at the others it holds what the last run left. The same is asked of two runs at once in one folder,
+of a run whose disk is full at a random size of a file (it has to say so, without a traceback, and
+goes on when there is room), and of one that goes on after a kill with the clock set back ten years.
 """
 
 import argparse
 import os
 import random
+import resource
 import shutil
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import tomlkit
@@ -73,12 +77,28 @@ COMMANDS = {
     "lobes-grid": ("lobes", "CASE", "--grid"),
     "simulate": ("simulate", "CASE"),
     "explain": ("explain", "EXAMPLES/explain-stability/measurement"),
+    "explain-frf": ("explain", "EXAMPLES/explain-frf/measurement"),
+    "explain-axis": ("explain", "EXAMPLES/explain-axis/measurement"),
+    "explain-cuts": ("explain", "EXAMPLES/explain-milling/measurement"),
     "learn": ("learn", "EXAMPLES/explain-stability/measurement/case.toml", "POINTS"),
 }
 
 
-def started(words: tuple[str, ...], case: Path, out: Path) -> subprocess.Popen:
-    """Process of a command."""
+#: loaded by Python before anything else where it lies on its path
+_CLOCK_SET_BACK = """
+import time
+now, now_ns = time.time, time.time_ns
+time.time = lambda: now() - 10 * 365 * 86400.0
+time.time_ns = lambda: now_ns() - 10 * 365 * 86400 * 10**9
+"""
+#: bytes that a file has at the most, of a disk that is full
+_FULL = (1_000, 60_000)
+
+
+def started(
+    words: tuple[str, ...], case: Path, out: Path, *, path: str = "", largest: int | None = None
+) -> subprocess.Popen:
+    """Process of a command, with a folder before Python's path and a largest size of files."""
     points = EXAMPLES / "explain-stability/measurement/points.csv"
     named = {"CASE": str(case), "POINTS": str(points)}
     line = [named.get(word, word.replace("EXAMPLES", str(EXAMPLES))) for word in words]
@@ -86,8 +106,11 @@ def started(words: tuple[str, ...], case: Path, out: Path) -> subprocess.Popen:
         [sys.executable, "-m", "chatter", *line, "--out", str(out)],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
-        env={**os.environ, "COLUMNS": "200"},
+        env={**os.environ, "COLUMNS": "200", "PYTHONPATH": path},
         text=True,
+        preexec_fn=None
+        if largest is None
+        else partial(resource.setrlimit, resource.RLIMIT_FSIZE, (largest, largest)),
     )
 
 
@@ -140,14 +163,52 @@ def campaign(name: str, out: Path, kills: int, chance: random.Random) -> int:
         if said:
             defects += 1
             print(f"{name}: kill {number}: {said}", flush=True)
-    target = folder / "twice"
-    both = [started(words, case, target) for _ in range(2)]
-    said = " ".join(finished(one) for one in both).strip() or differing(content(target), wanted)
-    if said:
-        defects += 1
-        print(f"{name}: two runs in one folder: {said}", flush=True)
-    print(f"{name}: {lasted:.1f} s, {kills} kills, 2 runs at once, {defects} defects", flush=True)
+    beside = {
+        "two runs in one folder": two_at_once(words, case, folder / "twice"),
+        "disk full": on_a_full_disk(words, case, folder / "full", chance.randint(*_FULL)),
+        "clock set back": with_the_clock_set_back(
+            words, case, folder / "clock", chance.uniform(0.0, lasted)
+        ),
+    }
+    for what, (said, target) in beside.items():
+        said = said or differing(content(target), wanted)
+        if said:
+            defects += 1
+            print(f"{name}: {what}: {said}", flush=True)
+    also = ", ".join(beside)
+    print(f"{name}: {lasted:.1f} s, {kills} kills, {also}: {defects} defects", flush=True)
     return defects
+
+
+def two_at_once(words: tuple[str, ...], case: Path, target: Path) -> tuple[str, Path]:
+    """Two runs in one folder: what went wrong, and where they wrote."""
+    both = [started(words, case, target) for _ in range(2)]
+    return " ".join(finished(one) for one in both).strip(), target
+
+
+def on_a_full_disk(
+    words: tuple[str, ...], case: Path, target: Path, largest: int
+) -> tuple[str, Path]:
+    """A run that finds no room, which has to say so, and one that does."""
+    first = started(words, case, target, largest=largest)
+    _, said = first.communicate()
+    told = [line for line in said.splitlines() if line.startswith("chatter: ")]
+    is_told = bool(told) and not any("a fault in chatter" in line for line in told)
+    if first.returncode and (not is_told or "Traceback" in said):
+        return f"exit {first.returncode} without a clear message: {said.strip()[-300:]}", target
+    return finished(started(words, case, target)), target
+
+
+def with_the_clock_set_back(
+    words: tuple[str, ...], case: Path, target: Path, seconds: float
+) -> tuple[str, Path]:
+    """A run that goes on after a kill ten years before it began."""
+    (target.parent / "sitecustomize.py").write_text(_CLOCK_SET_BACK, encoding="utf-8")
+    process = started(words, case, target)
+    time.sleep(seconds)
+    process.kill()
+    process.communicate()
+    return finished(started(words, case, target, path=str(target.parent))), target
 
 
 def main() -> None:

@@ -48,9 +48,9 @@ def assemble(
     from chatter.assembly.assembly_file import AssemblyFile
 
     file = options.patched(AssemblyFile.from_file(assembly), assignments)
+    folder = options.output_folder(out, assembly.stem)
     with progress_bar("stick-outs") as progress:
         found = run_assemble(file, method, progress)
-    folder = options.output_folder(out, assembly.stem)
     present(found, folder, json=json, words=_print_assembly, notes=found.notes)
 
 

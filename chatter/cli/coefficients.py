@@ -71,6 +71,7 @@ def coefficients(given: CoefficientOptions) -> None:
 
     if (given.table is None) != (given.name is None):
         raise InputError("--table and --name belong together: a row of a table, and its name")
+    folder = options.output_folder(given.out, given.records.resolve().stem)
     with progress_bar("mean forces and laws"):
         found = identify(given.records, given.case, given.hold_out or (), given.columns)
     if given.waveforms:
@@ -78,7 +79,6 @@ def coefficients(given: CoefficientOptions) -> None:
             found = found.with_waveforms()
     if given.rake is not None:
         found = found.with_rake(_angle(given.rake))
-    folder = options.output_folder(given.out, given.records.resolve().stem)
     present(found, folder, json=given.json, words=_print_coefficients)
     if given.table is not None and given.name is not None:
         print_written([found.keep_in(given.table, given.name)])

@@ -27,9 +27,9 @@ def compare(
     from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
+    folder = options.output_folder(out, measurement.resolve().stem)
     with progress_bar("predicting the runs"):
         result = run_compare(declared)
-    folder = options.output_folder(out, measurement.resolve().stem)
     options.print_coefficients(declared.case)
     present(result, folder, json=json, words=partial(_print_errors, declared.title))
 

@@ -90,6 +90,7 @@ def detect(options_: DetectOptions) -> None:
         with _recorded(options_):
             _follow(options_, case)
 
+    folder = options.output_folder(options_.out, options_.recording.stem)
     with progress_bar("spectra and verdicts"):
         found = run_detect(
             options_.recording,
@@ -100,7 +101,6 @@ def detect(options_: DetectOptions) -> None:
             sampling_rate=options_.sampling_rate,
             columns=options_.columns,
         )
-    folder = options.output_folder(options_.out, options_.recording.stem)
     present(found, folder, json=options_.json, words=_print_detection, notes=found.notes)
 
 

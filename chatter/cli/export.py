@@ -32,9 +32,9 @@ def export(
     from chatter.simulation.virtual_tests.export import export as export_machine
 
     file = options.patched_machine(machine, assignments)
+    folder = options.output_folder(out, machine.stem)
     with progress_bar("state space"):
         found = export_machine(file, excite or (), read or ())
-    folder = options.output_folder(out, machine.stem)
     present(found, folder, json=json, words=_print_export)
 
 

@@ -96,9 +96,9 @@ def frf(options: FrfOptions) -> None:
     }
     given = {key: value for key, value in changes.items() if value is not None}
     sections = frf_sections(file, options.only, given)
+    folder = output_folder(options.out, options.machine.stem)
     with progress_bar("time steps of the tests", run) as progress:
         result = frfs(file, sections, progress)
-    folder = output_folder(options.out, options.machine.stem)
     present(result, folder, json=options.json, words=_print_peaks)
 
 

@@ -94,6 +94,7 @@ def friction(given: FrictionOptions) -> None:
     )
     records = drive_records(given.records, settings)
     dimension = "moment_of_inertia" if records.rotary else "mass"
+    folder = options.output_folder(given.out, given.records[0].resolve().stem)
     with progress_bar("friction laws"):
         found = identify(
             records,
@@ -102,7 +103,6 @@ def friction(given: FrictionOptions) -> None:
             law=given.law,
             name=given.name,
         )
-    folder = options.output_folder(given.out, given.records[0].resolve().stem)
     present(found, folder, json=given.json, words=_print_friction, notes=found.notes)
 
 

@@ -59,6 +59,7 @@ def modes(options_: ModesOptions) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
     from chatter.studies.modal_test import modes as run_modes
 
+    folder = options.output_folder(options_.out, options_.files[0].stem or "modes")
     with progress_bar("fitting modes to the responses"):
         result = run_modes(
             options_.files,
@@ -72,7 +73,7 @@ def modes(options_: ModesOptions) -> None:
         )
     present(
         result,
-        options.output_folder(options_.out, options_.files[0].stem or "modes"),
+        folder,
         json=options_.json,
         words=_print_modes,
         notes=[*result.notes, *result.fit.warnings],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, TypeVar
 
@@ -102,5 +103,14 @@ def patched(described: Described, assignments: list[str] | None) -> Described:
 
 
 def output_folder(given: Path | None, name: str) -> Path:
-    """Folder to write to: as given, else one named after the input, here."""
-    return given if given is not None else Path(f"{name}-out")
+    """Folder to write to: as given, else one named after the input, here.
+
+    InputError, before the work is done, if nothing can be written there.
+    """
+    folder = given if given is not None else Path(f"{name}-out")
+    there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+    if not there.is_dir():
+        raise InputError(f"--out {folder}: {there} is a file; a folder is required")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"--out {folder}: nothing may be written to {there}; name another folder")
+    return folder

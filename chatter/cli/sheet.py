@@ -29,9 +29,9 @@ def sheet(
     from chatter.operator_sheet.sheet import sheet as sheet_of
 
     described = [options.patched_case(path, assignments) for path in cases]
+    folder = options.output_folder(out, cases[0].stem if len(cases) == 1 else "sheet")
     with progress_bar("limits and pockets") as progress:
         found = sheet_of(described, progress)
-    folder = options.output_folder(out, cases[0].stem if len(cases) == 1 else "sheet")
     present(found, folder, json=json, words=_print_sheet)
 
 

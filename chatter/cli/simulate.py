@@ -48,6 +48,7 @@ def simulate(
     from chatter.stability.beside_simulation import linear_verdict
     from chatter.stability.verdict_of_displaced import with_linear_verdict
 
+    folder = options.output_folder(out, case.stem)
     failure = None
     with progress_bar("time steps of the cut", run) as work:
         try:
@@ -63,7 +64,7 @@ def simulate(
     options.print_coefficients(description)
     present(
         result,
-        options.output_folder(out, case.stem),
+        folder,
         json=json,
         words=_print_summary,
         notes=result.summary()["notes"],

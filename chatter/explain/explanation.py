@@ -430,7 +430,9 @@ def explain(
     InputError
         If the measurement or its case cannot be used.
     RunError
-        If it is interrupted while predictions are kept, or they cannot be kept.
+        If it is interrupted while predictions are kept.
+    OSError
+        If they cannot be kept.
 
     Notes
     -----

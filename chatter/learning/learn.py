@@ -250,7 +250,9 @@ def learn(
     InputError
         If the case or the tests cannot be used, or an option is out of range.
     RunError
-        If it is interrupted while predictions are kept, or they cannot be kept.
+        If it is interrupted while predictions are kept.
+    OSError
+        If they cannot be kept.
     """
     declared = case if isinstance(case, Case) else load(case)
     _check(aim, risk, particles)

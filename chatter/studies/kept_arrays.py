@@ -77,7 +77,7 @@ class KeptArrays:
     def made(self, inputs: str, compute: Callable[[], Arrays]) -> Arrays:
         """Arrays of a key, computed where they are not kept yet; for threads too.
 
-        RunError if they cannot be written.
+        OSError if they cannot be written.
         """
         key = _digest(self._base + inputs.encode())
         found = self._read(key)
@@ -169,10 +169,9 @@ class KeptArrays:
                     self._own = self._begun()
                 at = _appended(self._own, record) + _HEADER.size
             except OSError as error:
-                reason = error.strerror or error
-                raise RunError(
-                    f"{self.path}: predictions cannot be kept: {reason}; those that are there stay"
-                ) from None
+                # no RunError: a search takes that for a case that cannot be predicted
+                words = f"predictions cannot be kept: {error.strerror}; those that are there stay"
+                raise OSError(error.errno, words, str(self.path)) from None
             self._left -= len(record)
             self._places[key] = _Place(self._own, at, len(content), _digest(content))
 

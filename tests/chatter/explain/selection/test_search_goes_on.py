@@ -1,5 +1,7 @@
 """A search that was ended in its middle takes the same way again and ends with the same numbers."""
 
+import errno
+
 import numpy as np
 import pytest
 
@@ -57,3 +59,13 @@ def test_another_tolerance_or_other_signals_begin_anew(tmp_path):
     others = measured(lambda random: unlike_shapes(random) * 1.01, (1.0, 0.0, 0.0))
     assert kept_predictions(tmp_path, "test", measurement).count > 0
     assert kept_predictions(tmp_path, "test", others).count == 0
+
+
+def test_a_disk_that_is_full_ends_the_search_and_makes_no_case_impossible(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("chatter.studies.kept_arrays._appended", refuse)
+    measurement = measured(unlike_shapes, (1.0, 0.0, 0.0))
+    with pytest.raises(OSError, match="cannot be kept: No space left on device"):
+        searched(measurement, Counted(), tmp_path)
