@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test nightly manual distributions benchmarks clean
+.PHONY: demo test nightly lowest manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
 	$(BIN)/chatter examples flexible-workpiece --run --open --out demo-output
@@ -20,6 +20,18 @@ nightly: $(VENV)/.installed-dev
 	CHATTER_PROPERTIES=2500 CHATTER_FUZZING=500 $(BIN)/pytest tests/validation/test_properties.py tests/benchmarks/test_fuzzing.py
 	$(BIN)/python -m benchmarks.fuzzing build/nightly/fuzzing --count 100000 --seed $$(date +%Y%m%d)
 	$(BIN)/python -m benchmarks.killed_commands build/nightly/killed --kills 30
+
+# tests with the oldest libraries that pyproject.toml allows, by the oldest Python there is: make lowest OLDEST=python3.10
+OLDEST ?= $(PYTHON)
+LOWEST := .venv-lowest/bin
+lowest: .venv-lowest/.installed
+	$(LOWEST)/pytest tests/chatter/description tests/chatter/io tests/chatter/cli tests/dynamics tests/cutting tests/validation tests/stored_numbers
+
+.venv-lowest/.installed: $(VENV)/.installed-dev pyproject.toml
+	$(OLDEST) -m venv .venv-lowest
+	$(BIN)/python -m tests.lowest_versions > .venv-lowest/constraints.txt
+	$(LOWEST)/python -m pip install --quiet --constraint .venv-lowest/constraints.txt --editable '.[formats]' 'pytest>=8' hypothesis jsonschema pyuff
+	@touch $@
 
 # the site in build/manual; no network is needed to build it
 manual: $(VENV)/.installed-dev
@@ -49,4 +61,4 @@ $(VENV)/.installed-dev: $(VENV)/.installed
 	@touch $@
 
 clean:
-	rm -rf $(VENV) demo-output build dist docs/generated *.egg-info
+	rm -rf $(VENV) .venv-lowest demo-output build dist docs/generated *.egg-info

@@ -105,9 +105,11 @@ def keys_of(section: type[BaseModel]) -> list[str]:
 
 def _sections(annotation: Any) -> list[type[BaseModel]]:
     """Section classes in an annotation, unwrapping options, lists and mappings."""
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+    parts = get_args(annotation)
+    # Python 3.10 takes list[float] for a type
+    if not parts and isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
-    return [section for part in get_args(annotation) for section in _sections(part)]
+    return [section for part in parts for section in _sections(part)]
 
 
 def is_mapping(annotation: Any) -> bool:
