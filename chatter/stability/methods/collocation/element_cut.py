@@ -7,6 +7,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
+import numpy as np
+
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.methods.collocation.element_response import (
     ElementPoints,
@@ -36,6 +38,10 @@ class ElementCut(NamedTuple):
         return self._replace(arrays=self.arrays._replace(fit=fit))
 
 
+#: angle, rad, that any mode turns through in an element at the most, as far as elements become no
+#: shorter than a share for it
+_MOST_TURNED, _SHORTEST_SHARE = 400.0, 1.0 / 16.0
+
 #: a cut at a resolution: Gauss points and wavelengths per element
 CutAt = Callable[[int, float], ElementCut]
 
@@ -53,6 +59,9 @@ def element_cut(
     """
     arrays = model.cut(max_depth, wavelengths)
     longest = wavelengths * 2.0 * math.pi / arrays.fastest
+    # modes far above chatter: a table over all that they turn through would cost more than elements
+    share = _MOST_TURNED / max(longest * float(np.max(arrays.natural_frequency)), _MOST_TURNED)
+    longest *= max(share, _SHORTEST_SHARE)
     of_element = element_points(points)
     response = response_table(arrays.natural_frequency, arrays.damping, of_element, longest)
     # no better than the elements are

@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numba import njit
 from numpy.typing import NDArray
 
@@ -20,6 +21,8 @@ from chatter.stability.simd_batch import load, spread, store
 
 #: series hold up to at least that omega h, and up to that times a power of two by this step
 _LEAST_REACH, _STEP = 1e-3, 0.125
+#: order of a quadrature from which on a dense eigenvalue problem for its points costs seconds
+_DENSE = 300
 
 
 class ElementPoints(NamedTuple):
@@ -65,7 +68,8 @@ def _through_gauss_points(nodes: Array, at: Array) -> NDArray:
 def _pushes_before(count: int, order: int) -> list[tuple[float, NDArray, NDArray]]:
     """Gauss points and end of an element: position, those before it (n,), force there (n, p)."""
     nodes = element_points(count).position[1:]
-    inside, weight = np.polynomial.legendre.leggauss(order)
+    rule = np.polynomial.legendre.leggauss if order < _DENSE else scipy.special.roots_legendre
+    inside, weight = rule(order)
     inside, weight = 0.5 * (inside + 1.0), 0.5 * weight
     return [
         (end, end * inside, _through_gauss_points(nodes, end * inside) * (end * weight)[:, None])

@@ -1,0 +1,55 @@
+"""Modes far above chatter: they add next to nothing to the limit, and no minutes to the answer."""
+
+import math
+
+import pytest
+
+import chatter
+from chatter.description.case import loads
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.model import milling_model
+
+CASE = """
+title = "one soft mode"
+[tool]
+teeth = 2
+diameter = "16 mm"
+[material]
+Ktc = "600 MPa"
+Krc = "200 MPa"
+[cut]
+mode = "down"
+spindle_speed = "600 rpm"
+feed_per_tooth = "0.1 mm"
+axial_depth = "0.01 mm"
+radial_depth = "8 mm"
+[[structure.mode]]
+frequency = "10 Hz"
+damping = 0.03
+stiffness = "1e4 N/m"
+direction = [1, 0, 0]
+"""
+FAR = """
+[[structure.mode]]
+frequency = "20 kHz"
+damping = 0.03
+stiffness = "1e9 N/m"
+direction = [1, 0, 0]
+"""
+
+
+def limit_of(text):
+    return chatter.check(loads(text)).summary()["critical_depth_mm"]
+
+
+def test_a_mode_far_above_chatter_is_as_its_compliance():
+    """A hundred thousandth of the compliance moves the limit by no more than about as much."""
+    assert limit_of(CASE + FAR) == pytest.approx(limit_of(CASE), rel=1e-3)
+
+
+def test_its_table_does_not_hold_all_its_turns():
+    """An element as long as a wavelength of the soft mode holds 2000 turns of the other."""
+    cut = element_cut(milling_model(loads(CASE + FAR)), 1e-3)
+    assert cut.response.furthest.max() < 2.0 * math.pi * 2000.0 / 10.0
+    alone = element_cut(milling_model(loads(CASE)), 1e-3)
+    assert cut.longest == pytest.approx(alone.longest / 16.0)
