@@ -21,11 +21,11 @@ nightly: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks.fuzzing build/nightly/fuzzing --count 100000 --seed $$(date +%Y%m%d)
 	$(BIN)/python -m benchmarks.killed_commands build/nightly/killed --kills 30
 
-# tests with the oldest libraries that pyproject.toml allows, by the oldest Python there is: make lowest OLDEST=python3.10
+# tests with the oldest libraries of pyproject.toml, which warn of each other, by the oldest Python: make lowest OLDEST=python3.10
 OLDEST ?= $(PYTHON)
 LOWEST := .venv-lowest/bin
 lowest: .venv-lowest/.installed
-	$(LOWEST)/pytest tests/chatter/description tests/chatter/io tests/chatter/cli tests/dynamics tests/cutting tests/validation tests/stored_numbers
+	$(LOWEST)/pytest -W ignore::DeprecationWarning tests/chatter/description tests/chatter/io tests/chatter/cli tests/dynamics tests/cutting tests/validation tests/stored_numbers
 
 .venv-lowest/.installed: $(VENV)/.installed-dev pyproject.toml
 	$(OLDEST) -m venv .venv-lowest
