@@ -1,0 +1,73 @@
+"""The Mandelli M5 of solid elements: masses, statics of the saddle, and a cut with friction."""
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg
+
+import chatter
+from chatter.compile.linearised_friction import rigid_motion
+from chatter.compile.machine_parts import assembled_machine, machine_parts
+from tests.places import EXAMPLES, example_module
+
+EXAMPLE = EXAMPLES / "machine-mandelli-m5"
+TRAVEL = 0.020 / (2.0 * np.pi)  # m/rad of the driving screw
+
+
+@pytest.fixture(scope="module")
+def file():
+    return chatter.load_machine(EXAMPLE / "machine-of-solids.toml")
+
+
+def shipped(file, name):
+    return next(one for one in machine_parts(file).bodies if one.name == name)
+
+
+@pytest.mark.parametrize(("axis", "inertia"), [("Y", 0.0192), ("Z", 0.0272)])
+def test_inertia_at_the_driving_screw_is_that_of_table_1(file, axis, inertia):
+    machine = assembled_machine(file)
+    motion = rigid_motion(machine, {axis: TRAVEL})
+    assert motion @ machine.structure.mass @ motion == pytest.approx(inertia, rel=1e-4)
+
+
+def test_the_mass_of_the_saddle_is_that_of_the_drawing(file):
+    saddle = shipped(file, "saddle")
+    volume = 0.76 * 0.56 * 0.26 - 0.69 * 0.49 * 0.19
+    lifted = saddle.rigid_motions[:, 1]
+    assert lifted @ saddle.mass_matrix @ lifted == pytest.approx(7200.0 * volume, rel=1e-6)
+
+
+def test_the_shipped_saddle_gives_way_as_its_full_mesh(file):
+    pytest.importorskip("skfem")
+    full = example_module("machine-mandelli-m5", "mandelli_parts").saddle().structure
+    reduced = shipped(file, "saddle").structure
+    answers = []
+    for one in (full, reduced):
+        # the seat pushed back against the four sliders: the forces balance
+        push = one.points["seat_front"][2] - 0.25 * sum(
+            one.points[f"{side}_{end}"][2] for side in ("left", "right") for end in ("low", "high")
+        )
+        mass = 10.0 * one.mass  # holds it softly
+        held = one.stiffness + mass
+        solved = (
+            scipy.sparse.linalg.spsolve(held.tocsc(), push)
+            if scipy.sparse.issparse(held)
+            else np.linalg.solve(held, push)
+        )
+        answers.append(push @ solved)
+    assert answers[1] == pytest.approx(answers[0], rel=1e-6)
+
+
+def test_a_slot_with_friction_keeps_its_energy():
+    case = chatter.load(EXAMPLE / "slot-upwards.toml").patch({"simulation.duration": "0.5 s"})
+    result = chatter.simulate(case)
+    assert any(note.startswith("the structure changes as the axes travel") for note in result.notes)
+    energy = result.energy
+    balance = energy["work"] + energy["travel"] - energy["dissipated"] - energy["stored"]
+    assert abs(balance) < 1e-3 * energy["dissipated"]
+    assert abs(energy["travel"]) > abs(balance)
+    frozen = chatter.simulate(case, {"structure.travel_positions": 1})
+    # over 3 mm the rails hardly change
+    for axis in ("Fx", "Fy"):
+        assert result.summary()["mean_force_N"][axis] == pytest.approx(
+            frozen.summary()["mean_force_N"][axis], rel=2e-3
+        )
