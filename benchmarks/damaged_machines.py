@@ -25,7 +25,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import tomllib
+import tomlkit
 
 import chatter
 from chatter.description.case import Case
@@ -208,7 +208,7 @@ def main(arguments: list[str]) -> None:
     warnings.simplefilter("ignore")
     sources = [(EXAMPLES / name, answer_of_machine) for name in MACHINES]
     sources += [(EXAMPLES / name, answer_of_case) for name in CASES]
-    whole = {file: tomllib.loads(file.read_text()) for file, _ in sources}
+    whole = {file: tomlkit.parse(file.read_text()).unwrap() for file, _ in sources}
     for file, answer in sources:
         answer(whole[file], file)  # compiles
         print(f"{file.relative_to(EXAMPLES)}: undamaged", flush=True)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
-import tomllib
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
@@ -211,7 +210,7 @@ def _as_toml(data: dict[str, Any]) -> bytes:
 def _documents(file: Path, schema: Schema) -> tuple[bytes, st.SearchStrategy[bytes]]:
     """Shipped content, and changes of it, whole documents of the schema and damaged text."""
     whole = file.read_bytes()
-    shipped = changed(tomllib.loads(whole.decode()), schema).map(_as_toml)
+    shipped = changed(tomlkit.parse(whole.decode()).unwrap(), schema).map(_as_toml)
     return whole, st.integers(0, 19).flatmap(
         lambda k: (
             damaged_bytes.damaged(whole)

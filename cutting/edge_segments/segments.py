@@ -258,8 +258,8 @@ def turning_ends(segments: list[Segment], owners: list[Owner], serrated: bool) -
     """Mark the ends (P, 2) of segments at which an edge first meets the stock, or last leaves it.
 
     There the spindle angle of entry or exit turns round along the edge, or the edge ends, or it
-    is no more cut all around, or the surface of one earlier pass gives way to that of another; not
-    along a serrated edge, on which it does so from wave to wave for a small part each.
+    is no more cut all around, or the surface of another earlier pass is the nearest from there on;
+    not along a serrated edge, on which that changes from wave to wave for a small part each.
     """
     marks = np.zeros((len(segments), 2), dtype=np.int64)
     position = {owner: i for i, owner in enumerate(owners)}

@@ -84,7 +84,7 @@ class Cut:
         power_share = float(
             np.mean([self.power_share[k] for k in runs or range(len(self.power_share))])
         )
-        return float(np.sqrt(1.0 - power_share + share**2 * power_share))
+        return float(np.sqrt(max(0.0, 1.0 - power_share + share**2 * power_share)))
 
 
 def wrong_assignment(measurement: Measurement) -> list[SignalFinding]:

@@ -47,7 +47,7 @@ def test_force_is_scaled_over_the_feed_distance_and_the_spindle_angle():
         ("spindle angle", 2.0 * math.pi, turn),
     ):
         scaled = simulate(case.patch({"empirical": [term(over, length)]}))
-        # the tool hardly gives way, so that the chip is the same
+        # the tool hardly yields, so that the chip is the same
         cuts = np.abs(plain.force[:, 1]) > 20.0
         ratio = scaled.force[cuts, 1] / plain.force[cuts, 1]
         assert ratio == pytest.approx(factor(share)[cuts], abs=4e-3)
