@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,6 +39,8 @@ _NOTHING = 1e-6
 #: the spectrum goes this far above the highest mode, or to this harmonic of the tooth passing
 _ABOVE_MODES = 3.0
 _LEAST_HARMONICS = 6
+#: amplitude in a spectrum, of the largest, below which nothing is drawn
+_FAINTEST = 1e-4
 
 
 def plot_simulation(result: SimulationResult) -> Figure:
@@ -222,8 +225,9 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     top = max(_LEAST_HARMONICS * tooth, _ABOVE_MODES * max(modes, default=0.0))
     largest = 0.0
     if rows.stop - rows.start >= 16:
-        for axis in _shown(values):
-            frequency, amplitude = spectrum(result.time[rows], values[rows, axis])
+        lines = {axis: spectrum(result.time[rows], values[rows, axis]) for axis in _shown(values)}
+        top = max(_LEAST_HARMONICS * tooth, min(top, 1.1 * _highest_line(lines.values())))
+        for axis, (frequency, amplitude) in lines.items():
             shown = frequency <= top
             axes.plot(
                 frequency[shown], amplitude[shown], color=_COLOURS[axis], linewidth=1.0,
@@ -234,10 +238,18 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     _mark_chatter(axes, result)
     axes.set_xlim(0.0, top)
     if largest > 0.0:
-        axes.set(yscale="log", ylim=(largest * 1e-4, largest * 2.0))
+        axes.set(yscale="log", ylim=(largest * _FAINTEST, largest * 2.0))
     style.finish(axes)
     axes.grid(visible=False, axis="x")
     axes.legend(loc="upper right", fontsize=8.0, framealpha=0.9, ncols=2)
+
+
+def _highest_line(lines: Iterable[tuple[Array, Array]]) -> float:
+    """Highest frequency of some spectra, Hz, whose amplitude is seen beside the largest of all."""
+    lines = list(lines)
+    faintest = _FAINTEST * max((amplitude.max() for _, amplitude in lines), default=0.0)
+    seen = [frequency[amplitude > faintest] for frequency, amplitude in lines]
+    return max((float(one[-1]) for one in seen if one.size), default=0.0)
 
 
 def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:

@@ -6,11 +6,9 @@ At the tip the chip is zero, so that any vibration takes a part of the lowest sl
 import pytest
 
 import chatter
-from chatter.plots.simulation import moving_plane
 from chatter.simulation.perturbation.multiplier import simulated_multiplier
 from chatter.simulation.structure_in_time import modes_of
 
-MODE = {"frequency": "900 Hz", "damping": 0.03, "stiffness": "9 N/um"}
 CASE = """
 title = "A ball that yields along its axis"
 [tool]
@@ -56,12 +54,3 @@ def test_a_stable_cut_repeats(case):
     found = chatter.simulate(case)
     assert found.detection.verdict == "stable"
     assert found.detection.metrics["deviation"] < 1e-4
-
-
-def test_the_picture_shows_the_axis_that_moves(case):
-    moves_along_z = chatter.simulate(case.patch({"simulation.revolutions": 3}))
-    assert moving_plane(moves_along_z) == (0, 2)
-    along_x = case.patch({"structure.mode[0].direction": "x", "simulation.revolutions": 3})
-    assert moving_plane(chatter.simulate(along_x)) == (0, 1)
-    both = along_x.patch({"structure.mode[1]": {**MODE, "direction": "z"}})
-    assert moving_plane(chatter.simulate(both)) == (0, 2)
