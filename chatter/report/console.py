@@ -14,6 +14,7 @@ from chatter.report.recording import document
 #: messages go to stderr, so that stdout holds results alone
 MESSAGES = Console(stderr=True, highlight=False, soft_wrap=True)
 RESULTS = Console(highlight=False, soft_wrap=True)
+_WIDTH_OF_FILES = 140
 
 
 @contextmanager
@@ -44,6 +45,9 @@ def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]
         table.add_column(Text(header), justify="right")
     for row in rows:
         table.add_row(*(Text(cell) for cell in row))
+    if not RESULTS.is_terminal:
+        # a file or a pipe has no width of its own
+        RESULTS.width = max(RESULTS.width, _WIDTH_OF_FILES)
     RESULTS.print(table)
 
 
