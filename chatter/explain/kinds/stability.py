@@ -86,7 +86,7 @@ class Stability(Kind):
 
     def keeping(self, kept: KeptArrays) -> Kind:
         """Return the kind with the responses of tests kept on disk."""
-        return Stability(kept)
+        return type(self)(kept)
 
     def channels(self, run: Run) -> tuple[str, ...]:
         """The verdicts, the chatter frequencies or the spindle powers: one of them a run."""
