@@ -89,18 +89,20 @@ def _range(vary: str, count: int) -> tuple[str, list[float]]:
 
 
 def _print_onsets(diagram: BifurcationDiagram) -> None:
-    """Print every change of verdict along the range."""
+    """Print from where to where along the range cuts have the same verdict."""
     points, unit = diagram.summary()["points"], usual_unit(Case, diagram.path)
 
     def value_of(point: dict) -> str:
         return f"{point['value'] * unit.factor:.5g} {unit.name}".rstrip()
 
-    print_line(f"{value_of(points[0])}: {points[0]['verdict']}")
-    for before, point in itertools.pairwise(points):
-        if point["verdict"] != before["verdict"]:
-            frequency = point["chatter_frequency_Hz"]
-            at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
-            print_line(f"from {value_of(point)}: {point['verdict']}{at}")
+    for verdict, group in itertools.groupby(points, lambda point: point["verdict"]):
+        alike = list(group)
+        first, last = value_of(alike[0]), value_of(alike[-1])
+        span = first if len(alike) == 1 else f"{first} to {last}"
+        frequency = alike[0]["chatter_frequency_Hz"]
+        at = f" at {frequency:.1f} Hz ({alike[0]['bifurcation']})" if frequency else ""
+        onset = " where it sets in" if at and len(alike) > 1 else ""
+        print_line(f"{span}: {verdict}{at}{onset}")
     left = [point for point in points if point["spread_um"] is None]
     if left:
         share, first = f"{len(left)} of {len(points)}", value_of(left[0])

@@ -13,6 +13,7 @@ from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
+from chatter.description.formatting import to_digits
 from chatter.description.units import QuantityError, parse
 from chatter.report.console import print_line, print_notes, print_table, print_written
 
@@ -94,11 +95,11 @@ def _angle(given: str) -> float:
 def _print_coefficients(found: Coefficients) -> None:
     summary = found.summary()
     rows = [
-        [one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}", one["unit"]]
+        [one["name"], f"{one['value']:.4g}", to_digits(one["standard_deviation"]), one["unit"]]
         for one in summary["coefficients"]
     ]
     rows += [
-        ["exponent", f"{one['value']:.3f}", f"{one['standard_deviation']:.2g}", ""]
+        ["exponent", f"{one['value']:.3f}", to_digits(one["standard_deviation"]), ""]
         for one in summary["exponents"]
     ]
     title = f"{summary['law']} law, {summary['from']} of {len(found.measurement.runs)} cuts"
@@ -128,7 +129,7 @@ def _print_oblique(one: dict[str, Any]) -> None:
         "oblique law, rake as given and shear angle by Merchant",
         ["number", "value", "+-", "unit"],
         [
-            [key["name"], f"{key['value']:.4g}", f"{key['standard_deviation']:.2g}", key["unit"]]
+            [key["name"], f"{key['value']:.4g}", to_digits(key["standard_deviation"]), key["unit"]]
             for key in one["values"]
         ],
     )
@@ -163,7 +164,7 @@ def _print_waveforms(summary: dict[str, Any], shown: str) -> None:
             ["number", "value", "+-", "unit"],
             [
                 [
-                    one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}",
+                    one["name"], f"{one['value']:.4g}", to_digits(one["standard_deviation"]),
                     one["unit"],
                 ]
                 for one in numbers

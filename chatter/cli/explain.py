@@ -12,8 +12,10 @@ from chatter.cli import options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.description.case import Case
+from chatter.description.formatting import signed
 from chatter.description.usual_units import usual_unit
 from chatter.report.console import print_answer, print_line, print_table
+from chatter.report.parameters import parameter_row
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation
@@ -61,15 +63,7 @@ def _print_explanation(result: Explanation) -> None:
     print_answer(f"verdict: {summary['verdict']}")
     print_checks(summary["checks"])
     for effect in summary["effects"]:
-        rows = [
-            [
-                key,
-                f"{one['value']:.5g}",
-                one["unit"],
-                f"{one['ci95'][0]:.5g} to {one['ci95'][1]:.5g}",
-            ]
-            for key, one in effect["parameters"].items()
-        ]
+        rows = [parameter_row(key, one) for key, one in effect["parameters"].items()]
         title = (
             f"{effect['name']} (probability {effect['probability']:.3g}): {effect['description']}"
         )
@@ -90,13 +84,19 @@ def _print_explanation(result: Explanation) -> None:
         )
     for one in summary["out_of_tolerance"]:
         print_line(
-            f"out of tolerance: {one['path']} declared {one['declared']:.5g}, refitted "
-            f"{one['refitted']:.5g} ({one['standard_deviations']:+.1f} standard deviations)"
+            f"out of tolerance: {one['path']} declared "
+            f"{_in_usual_unit(one['declared'], one['path'])}, refitted "
+            f"{_in_usual_unit(one['refitted'], one['path'])} "
+            f"({one['standard_deviations']:+.1f} standard deviations)"
         )
     _print_refitted(summary)
     error = summary["error"]
-    rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
-    print_table("error, rms over signal", ["", ""], rows)
+    rows = [
+        [key.replace("_", " "), f"{value:.4g}"]
+        for key, value in error.items()
+        if isinstance(value, float)
+    ]
+    print_table("error of the prediction", ["of", "rms over signal"], rows)
     _print_errors_by_kind(summary)
     if summary["next_measurement"] is not None:
         print_line(in_words_next(summary["next_measurement"]))
@@ -130,7 +130,7 @@ def _print_refitted(summary: dict[str, Any]) -> None:
             one["name"],
             _in_usual_unit(one["declared"], one["name"]),
             _in_usual_unit(one["refitted"], one["name"]),
-            f"{100.0 * one['change']:+.2g} %",
+            f"{signed(100.0 * one['change'])} %",
             f"{one['tolerances']:+.2f}",
         ]
         for one in moved

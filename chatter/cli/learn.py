@@ -21,6 +21,7 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
+from chatter.description.formatting import to_digits
 from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
@@ -77,9 +78,9 @@ def _print_learnt(found: Learnt) -> None:
         [
             one["path"],
             f"{one['declared']['value']:.5g}",
-            f"{one['declared']['standard_deviation']:.2g}",
+            to_digits(one["declared"]["standard_deviation"]),
             f"{one['learnt']['median']:.5g}",
-            f"{one['learnt']['standard_deviation']:.2g}",
+            to_digits(one["learnt"]["standard_deviation"]),
         ]
         for one in summary["parameters"]
     ]

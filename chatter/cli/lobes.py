@@ -30,6 +30,13 @@ if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram
 
 
+#: what computes limits that hold with edge forces
+_IN_TIME = (
+    "`chatter check --method time-domain` computes the limit at the speed of the cut with edge "
+    "forces, `chatter lobes --method time-domain` at every speed of lobes.speeds.count"
+)
+
+
 @dataclass(frozen=True)
 class LobesOptions:
     """What `chatter lobes` is given."""
@@ -142,11 +149,17 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         ]
         for pocket in summary["pockets"]
     ]
-    print_table(
-        f"pockets worth using ({depth:.0%} below the limit, {margin:.1%} off in speed)",
-        ["speed [rpm]", "depth [mm]", "limit [mm]", "removal [cm³/min]"],
-        rows,
-    )
+    if rows:
+        print_table(
+            f"pockets worth using ({depth:.0%} below the limit, {margin:.1%} off in speed)",
+            ["speed [rpm]", "depth [mm]", "limit [mm]", "removal [cm³/min]"],
+            rows,
+        )
+    elif diagram.why_no_pocket:
+        print_line(f"no pocket is named: {diagram.why_no_pocket}")
+        print_line(_IN_TIME)
+    else:
+        print_line("no pocket between these speeds is deeper than what any of them allows")
     if lowest["critical_depth_mm"] is not None:
         print_line(
             f"{_stable_below(lowest['stable_below_mm'])} (lowest limit "
@@ -162,8 +175,9 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         f"limit there {_millimetres(limit, summary['max_axial_depth_mm'])} mm"
     )
     if not operating["certain"]:
-        reasons = "; ".join(effect.because for effect in diagram.deciding)
-        print_line(f"{reasons}; `chatter simulate` decides")
+        known = diagram.neglected_at_all_speeds if diagram.why_no_pocket else ()
+        reasons = [effect.because for effect in diagram.deciding if effect not in known]
+        print_line("; ".join([*reasons, "`chatter simulate` decides"]))
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
     print_line(f"method: {summary['method']}{accuracy}")
@@ -179,9 +193,8 @@ def _taken_off(diagram: StabilityDiagram) -> str:
     """What is taken off the lowest limit, and why."""
     return "".join(
         f"; less {one.share:.0%}: {one.name} that set in at a chip of zero"
-        if one.lowest > 0.0
-        else f"; {one.because}"
         for one in diagram.neglected_at_all_speeds
+        if not diagram.why_no_pocket
     )
 
 

@@ -13,6 +13,7 @@ from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.formatting import to_digits
 from chatter.io.recorded_columns import KINDS, require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
@@ -80,7 +81,8 @@ def _print_summary(result: SimulationResult) -> None:
     summary = result.summary()
     peak, mean = summary["peak_force_N"], summary["mean_force_N"]
     rows = [[name, f"{peak[name]:.4g}", f"{mean[name]:.4g}"] for name in peak]
-    print_table("force on the tool, settled cut", ["", "peak [N]", "mean [N]"], rows)
+    part = "in chatter" if summary["verdict"] == "chatter" else "settled cut"
+    print_table(f"force on the tool, {part}", ["", "peak [N]", "mean [N]"], rows)
     power = summary["power"]
     print_line(
         f"power {power['mean_W']:.4g} W mean, {power['peak_W']:.4g} W peak; "
@@ -88,7 +90,7 @@ def _print_summary(result: SimulationResult) -> None:
     )
     print_line(
         f"cutting speed {summary['cutting_speed_m_per_min']:.4g} m/min, "
-        f"feed rate {summary['feed_rate_mm_per_min']:.4g} mm/min; "
+        f"feed rate {to_digits(summary['feed_rate_mm_per_min'], 4)} mm/min; "
         f"displacement {summary['peak_displacement_um']:.3g} um peak"
     )
     _print_transient(summary)

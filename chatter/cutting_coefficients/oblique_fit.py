@@ -17,6 +17,7 @@ import scipy
 import tomlkit
 
 from chatter.description.arrays import Array
+from chatter.description.formatting import to_digits
 from cutting.force.oblique import oblique_cutting_coefficients
 
 #: first values: shear stress over the tangential coefficient, friction angle (rad)
@@ -91,7 +92,8 @@ class ObliqueFit:
         section.add("law", "oblique")
         for one in self._rows():
             section.add(
-                one["name"], f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+                one["name"],
+                f"{one['value']:.5g} +- {to_digits(one['standard_deviation'])} {one['unit']}",
             )
         section.add("shear_angle", f"{math.degrees(self.shear_angle):.5g} deg")
         section.add("rake_angle", f"{math.degrees(self.rake):.5g} deg")

@@ -23,6 +23,7 @@ from chatter.cutting_coefficients.waveforms import Waveforms, waveforms
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.formatting import to_digits
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -403,7 +404,7 @@ class Coefficients:
         row: dict[str, Any] = {"law": self.kept.law.law}
         for one in self._coefficients(self.kept):
             row[one["name"]] = (
-                f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+                f"{one['value']:.5g} +- {to_digits(one['standard_deviation'])} {one['unit']}"
             )
         if self.kept.exponents.size:
             row["exponent"] = round(float(self.kept.exponents[0]), 5)

@@ -20,6 +20,7 @@ from chatter.cutting_coefficients.waveform_choice import waveform_fits
 from chatter.cutting_coefficients.waveform_fit import WaveformFit
 from chatter.cutting_coefficients.waveform_model import RUNOUT_UNIT, Complex
 from chatter.description.arrays import Array
+from chatter.description.formatting import to_digits
 from chatter.explain.measurement import Measurement
 
 #: share of the varying force above which a rigid tool is no model of the cut
@@ -201,7 +202,7 @@ class Waveforms:
         row: dict[str, Any] = {"law": fit.model.law.law}
         for one in _coefficients(fit):
             row[one["name"]] = (
-                f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+                f"{one['value']:.5g} +- {to_digits(one['standard_deviation'])} {one['unit']}"
             )
         exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
         if exponent.size:

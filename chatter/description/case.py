@@ -46,6 +46,7 @@ from chatter.description.stated_engagement import (
 from chatter.description.toml_document import move_references
 from chatter.description.toml_editing import Layout
 from chatter.description.whole_files import write_whole
+from chatter.description.without_effect import keys_without_effect
 from cutting.engagement.uncut_band import UncutBand
 
 if TYPE_CHECKING:
@@ -148,6 +149,11 @@ class Case(Description):
     @classmethod
     def _move_references(cls, document: Any, old: Path, new: Path) -> None:
         move_references(document, old, new)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know of the file: renamed keys, and keys that nothing uses."""
+        return (*super().notes, *keys_without_effect(self))
 
     @property
     def uncut_band(self) -> UncutBand:

@@ -26,3 +26,14 @@ def printable(text: str, longest: int = _LONGEST) -> str:
     """Return text without control characters and cut to what fits a message."""
     clean = "".join(part if part.isprintable() else "?" for part in text[: longest + 1])
     return clean if len(clean) <= longest else clean[:longest] + "..."
+
+
+def to_digits(value: float, digits: int = 2) -> str:
+    """Number to so many significant digits, without an exponent where people write none: 140."""
+    short = f"{value:.{digits}g}"
+    return f"{float(short):.6g}" if 1.0 <= abs(float(short)) < 1e6 else short
+
+
+def signed(value: float, digits: int = 2) -> str:
+    """Number as `to_digits` has it, with its sign."""
+    return ("-" if value < 0.0 else "+") + to_digits(abs(value), digits)

@@ -23,11 +23,16 @@ _STIFFNESS = _Usual(0.05e6, 1e10, "N/um", 1e-6, "modes of tools, spindles and th
 _DAMPING = _Usual(5e-4, 0.3, "", 1.0, "damping ratios of machines and tools")
 _PRESSURE = _Usual(50e6, 1e10, "MPa", 1e-6, "metals and plastics")
 _CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling cutters")
+_EDGE = _Usual(0.5e3, 500e3, "N/mm", 1e-3, "edges in metals and plastics")
+_RUNOUT = _Usual(0.0, 0.2e-3, "mm", 1e3, "tools in their holders")
 _DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
 #: diameters beyond which a depth of cut is asked about, and those that common flutes are long
 _DEEPEST, _COMMON_FLUTES = 8.0, 3.0
 #: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
 _CARBIDE, _STIFFER = 650e9, 1.5
+#: feed per tooth over the diameter, and radial over tangential cutting pressure, beyond which they
+#: are asked about
+_LARGEST_FEED, _LARGEST_RADIAL = 0.05, 2.0
 #: growth of vibration from tooth to tooth beyond which the input is in doubt
 _MOST_GROWTH = 1e3
 
@@ -41,14 +46,47 @@ def questions(case: Case) -> list[str]:
         asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS)
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
     asked += _question_of_stiff_tool(case)
-    if case.material is not None and case.material.Ktc:
-        asked += _question("material.Ktc", case.material.Ktc, _PRESSURE)
+    asked += _questions_of_material(case)
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
         asked += _question("cutting speed", speed, _CUTTING_SPEED)
         asked += _question("tool.diameter", case.tool.diameter, _DIAMETER)
         asked += _question_of_depth(case)
+        asked += _question_of_feed(case)
+        if case.tool.runout is not None:
+            asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT)
     return asked
+
+
+def _questions_of_material(case: Case) -> list[str]:
+    """Ask about coefficients that no metal has, such as those in another unit than meant."""
+    material = case.material
+    if material is None:
+        return []
+    asked = []
+    if material.Ktc:
+        asked += _question("material.Ktc", material.Ktc, _PRESSURE)
+    for key in ("Kte", "Kre"):
+        value = getattr(material, key)
+        if value and value > 0.0:
+            asked += _question(f"material.{key}", value, _EDGE)
+    if material.Ktc and material.Krc and material.Krc > _LARGEST_RADIAL * material.Ktc:
+        asked.append(
+            f"material.Krc: is {1e-6 * material.Krc:.4g} MPa meant? the radial coefficient is "
+            f"{material.Krc / material.Ktc:.2g} times the tangential one; most metals have 0.1 to 1"
+        )
+    return asked
+
+
+def _question_of_feed(case: Case) -> list[str]:
+    """Ask about a chip that no edge of a tool of its diameter takes."""
+    feed, diameter = case.cut.feed_per_tooth, case.tool.diameter
+    if feed <= _LARGEST_FEED * diameter:
+        return []
+    return [
+        f"cut.feed_per_tooth: is {1e3 * feed:.3g} mm meant? that is {feed / diameter:.0%} of the "
+        f"diameter, {60e3 * case.feed_speed:.0f} mm/min"
+    ]
 
 
 def _question_of_depth(case: Case) -> list[str]:

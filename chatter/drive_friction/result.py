@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import tomlkit
 
+from chatter.description.formatting import to_digits
 from chatter.drive_friction.drive_records import DriveRecords
 from chatter.drive_friction.friction_laws import FitSettings, FittedFriction
 from chatter.io.presentation import presentation
@@ -192,7 +193,7 @@ class DriveFriction:
                 continue
             if name in found:
                 value, error = max(found[name].value, 0.0), found[name].standard_error
-                spread = f" +- {error:.2g}" if 0.0 < error < np.inf and value > 0.0 else ""
+                spread = f" +- {to_digits(error)}" if 0.0 < error < np.inf and value > 0.0 else ""
                 keys[name] = f"{value:.5g}{spread} {self.unit(name)}"
             elif name == "coulomb":
                 keys[name] = f"0 {self.unit(name)}"

@@ -16,6 +16,7 @@ from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.signature import Signature, signature_of
+from chatter.io.headings import signal_unit
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 
@@ -71,12 +72,15 @@ class Comparison:
         return write_results(folder, texts, pictures)
 
     def _table(self) -> str:
-        heading = "run,channel,rms error [SI],rms error over signal,noise [SI],rms error over noise"
-        rows = [
-            f"{one.run},{one.channel},{one.error:.6g},{one.relative:.6g},{one.noise:.6g},"
-            f"{one.over_noise:.6g}"
-            for one in self.errors
-        ]
+        heading = "run,channel,unit,rms error,rms error over signal,noise,rms error over noise"
+        rows = []
+        for one in self.errors:
+            unit = signal_unit(one.channel)
+            error, noise = one.error * unit.factor, one.noise * unit.factor
+            rows.append(
+                f"{one.run},{one.channel},{unit.name},{error:.6g},{one.relative:.6g},{noise:.6g},"
+                f"{one.over_noise:.6g}"
+            )
         return "\n".join([heading, *rows]) + "\n"
 
 

@@ -9,6 +9,7 @@ from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.operator_sheet.variation import Variation
 from chatter.stability.diagram import StabilityDiagram
+from chatter.stability.neglected_effects import CHATTER, NOT_CERTAIN, STABLE
 
 #: pockets on a sheet
 _MOST_POCKETS = 3
@@ -26,7 +27,7 @@ class SheetCut(NamedTuple):
     feed_rate: float | None  # mm/min
     limit: float | None  # mm; None where none was found up to the searched depth
     removal_rate: float | None  # cm^3/min
-    stable: bool
+    verdict: str  # "stable", "chatter" or "not certain"
 
     @property
     def margin(self) -> float | None:
@@ -53,7 +54,7 @@ def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:
         cut.spindle_speed,
         cut.axial_depth,
         float(diagram.operating.critical_depth[0]),
-        diagram.operating_is_stable,
+        _verdict(diagram),
     )
     pockets = [
         _at_speed(
@@ -62,15 +63,22 @@ def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:
             pocket.spindle_speed,
             pocket.axial_depth,
             pocket.critical_depth,
-            stable=True,
+            STABLE,
         )
         for place, pocket in enumerate(diagram.pockets[:_MOST_POCKETS], start=1)
     ]
     return (stated, *pockets, *_at_any_speed(diagram))
 
 
+def _verdict(diagram: StabilityDiagram) -> str:
+    """Verdict on the cut as stated."""
+    if diagram.deciding:
+        return NOT_CERTAIN
+    return STABLE if diagram.operating_is_stable else CHATTER
+
+
 def _at_speed(
-    case: Case, name: str, speed: float, depth: float, limit: float, stable: bool
+    case: Case, name: str, speed: float, depth: float, limit: float, verdict: str
 ) -> SheetCut:
     turns = speed / (2.0 * math.pi)
     feed = case.cut.feed_per_tooth * case.tool.teeth * turns
@@ -84,14 +92,15 @@ def _at_speed(
         60e3 * feed,
         1e3 * limit if math.isfinite(limit) else None,
         60e6 * depth * case.width_of_cut * feed,
-        stable,
+        verdict,
     )
 
 
 def _at_any_speed(diagram: StabilityDiagram) -> list[SheetCut]:
     """Depth below every limit of the range, less the margin; none where there is no limit."""
     lowest = diagram.lowest.critical_depth
-    if not math.isfinite(lowest):
+    # where no bound is known, no depth is stable for certain
+    if not math.isfinite(lowest) or diagram.depth_margin >= 1.0:
         return []
     case = diagram.case
     return [
@@ -105,6 +114,6 @@ def _at_any_speed(diagram: StabilityDiagram) -> list[SheetCut]:
             None,
             1e3 * lowest,
             None,
-            stable=True,
+            STABLE,
         )
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,10 @@ from chatter.operator_sheet.cuts import CaseCuts, cuts_of
 from chatter.operator_sheet.variation import variation_that_helps
 from chatter.operator_sheet.workbook import workbook_of
 from chatter.stability.lobes import lobes
+from chatter.stability.neglected_effects import STABLE
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+
+_PERCENT = 100
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,7 +75,7 @@ def sheet(
     ----------
     cases : path, Case, or sequence of them
     progress : callable, optional
-        Called with (done, total) cases.
+        Called with (done, total) percent of the cases.
 
     Raises
     ------
@@ -84,14 +88,19 @@ def sheet(
         raise InputError("no case is given; a sheet is of one case or more")
     found = []
     for place, one in enumerate(given):
-        progress(place, len(given))
-        found.append(_cuts(one if isinstance(one, Case) else load(one)))
-    progress(len(given), len(given))
+        part = partial(_of_all, progress, place, len(given))
+        found.append(_cuts(one if isinstance(one, Case) else load(one), part))
+        part(1, 1)
     return Sheet(tuple(found))
 
 
-def _cuts(case: Case) -> CaseCuts:
-    diagram = lobes(case)
+def _of_all(progress: Progress, place: int, cases: int, done: int, total: int) -> None:
+    """Report the speeds of one case that are done as percent of all cases."""
+    progress(_PERCENT * place + _PERCENT * done // total, _PERCENT * cases)
+
+
+def _cuts(case: Case, progress: Progress) -> CaseCuts:
+    diagram = lobes(case, progress=progress)
     variation = variation_that_helps(case, float(diagram.operating.critical_depth[0]))
     return CaseCuts(case, diagram, cuts_of(diagram), variation)
 
@@ -104,7 +113,8 @@ def _summary(one: CaseCuts) -> dict[str, Any]:
         "cuts": [
             {
                 "name": cut.name,
-                "stable": cut.stable,
+                "verdict": cut.verdict,
+                "stable": cut.verdict == STABLE,
                 "spindle_speed_rpm": cut.spindle_speed,
                 "cutting_speed_m_per_min": cut.cutting_speed,
                 "axial_depth_mm": cut.axial_depth,

@@ -57,7 +57,7 @@ def rows_of(one: CaseCuts) -> list[tuple[Any, ...]]:
         (
             title,
             cut.name,
-            "stable" if cut.stable else "chatter",
+            cut.verdict,
             "any" if cut.spindle_speed is None else round(cut.spindle_speed),
             _rounded(cut.cutting_speed, 1),
             _rounded(cut.axial_depth, 3),

@@ -17,6 +17,7 @@ from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
+    from chatter.studies.optimisation.limits import Limits
     from chatter.studies.optimisation.optimum import Optimum
 
 _PER_MINUTE = 6e7
@@ -82,7 +83,7 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
     fills = (
         (style.UNSTABLE_FILL, "chatter"),
         (style.STABLE_FILL, "stable"),
-        (_KEPT_FILL, "stable, with margins, all limits kept"),
+        (_KEPT_FILL, _kept(found.limits)),
     )
     handles += [Patch(facecolor=c, edgecolor=style.GREY, label=text) for c, text in fills]
     axes.legend(
@@ -92,6 +93,13 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
     axes.set_xlim(speed[0], speed[-1])
     axes.set(ylim=(0.0, top), xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
     style.finish(axes)
+
+
+def _kept(limits: Limits) -> str:
+    """What the darker fill keeps: margins, or nothing yet of what a confidence takes off."""
+    if limits.depth_margin or limits.speed_margin:
+        return "stable, with margins, all limits kept"
+    return f"stable, all limits kept; a confidence of {limits.confidence:g} takes off more"
 
 
 def _elsewhere(known: np.ma.MaskedArray, shown: np.ma.MaskedArray) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeN
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from chatter.description.arrays import Array
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.stability.neglected_effects import lowest_factor
@@ -21,7 +22,10 @@ from chatter.stability.registry import METHODS
 if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram, StabilityMap
 
-_FILL_ROWS = 1000
+_FILL_ROWS, _FILL_COLUMNS = 1000, 1000
+#: beside 0 stable, 1 chatter
+_NOT_SEARCHED = 2
+_NO_POCKET = "no pocket between these speeds"
 #: depth shown over the highest limit, the same where some speeds have none, and over the cut
 _ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
 #: more values than this make a line without markers
@@ -116,25 +120,64 @@ def _top(diagram: StabilityDiagram) -> float:
 
 
 def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
-    """Fill every stable and unstable interval of depth; closed islands show as such."""
+    """Fill every stable and unstable interval of depth; closed islands show as such.
+
+    Between values the limits are straight lines, as the curves are drawn.
+    """
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
-    crossings = diagram.limits.crossings
+    x, left, share = _columns(diagram.axis.values)
+    crossings = [_between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)]
     chatter = np.array([np.searchsorted(found, depth) % 2 for found in crossings]).T
     # nothing is known beyond the search, and where there was none
-    beyond = ~(depth[:, None] <= np.maximum(diagram.max_depth[None, :], 0.0))
+    beyond = ~(depth[:, None] <= _searched(diagram, left, share)[None, :])
     if diagram.is_over_speed:
         beyond[:] = False
     axes.pcolormesh(
-        diagram.axis.values,
+        x,
         depth * 1e3,
-        np.ma.masked_where(beyond, chatter),
-        cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]),
+        np.where(beyond, _NOT_SEARCHED, chatter),
+        cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL]),
         shading="nearest",
         vmin=0,
-        vmax=1,
+        vmax=_NOT_SEARCHED,
         zorder=0.5,
         rasterized=True,
     )
+    if beyond.any():
+        axes.fill_between(
+            [], [], facecolor=style.NOT_SEARCHED_FILL, edgecolor=style.GREY, label="not searched"
+        )
+
+
+def _columns(x: Array) -> tuple[Array, IntegerArray, Array]:
+    """Columns of the fill: x, the value to the left of each, and the share of the way to the next.
+
+    Every value is a column, as many are between any two.
+    """
+    between = max(1, math.ceil(_FILL_COLUMNS / x.size))
+    place = np.linspace(0.0, x.size - 1.0, between * (x.size - 1) + 1)
+    left = np.minimum(place.astype(np.int64), max(x.size - 2, 0))
+    share = place - left
+    right = np.minimum(left + 1, x.size - 1)
+    return x[left] + share * (x[right] - x[left]), left, share
+
+
+def _between(crossings: Sequence[Array], left: int, share: float) -> Array:
+    """Limits between two values; where intervals come or go, those of the nearer one."""
+    before, after = crossings[left], crossings[min(left + 1, len(crossings) - 1)]
+    if len(before) == len(after):
+        return before + share * (after - before)
+    return before if share < 0.5 else after
+
+
+def _searched(diagram: StabilityDiagram, left: IntegerArray, share: Array) -> Array:
+    """Depth to which was searched in each column, m; zero where there is no cut."""
+    known = np.isfinite(diagram.max_depth)
+    depth = np.where(known, np.maximum(diagram.max_depth, 0.0), 0.0)
+    right = np.minimum(left + 1, depth.size - 1)
+    found = depth[left] + share * (depth[right] - depth[left])
+    nearer = np.where(share < 0.5, left, right)
+    return np.where(known[left] & known[right], found, depth[nearer])
 
 
 def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
@@ -179,7 +222,9 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
     margin = (
         f"pockets ({diagram.depth_margin:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
     )
-    return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
+    if rows:
+        return "\n".join([margin, *rows])
+    return "no pocket: " + diagram.why_no_pocket if diagram.why_no_pocket else _NO_POCKET
 
 
 def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:

@@ -15,6 +15,7 @@ from chatter.description.units import rpm
 #: Okabe and Ito's palette
 BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
 STABLE_FILL, UNSTABLE_FILL = "#E8F3EE", "#F6E3D8"
+NOT_SEARCHED_FILL = "#ECECEC"
 
 #: dots an inch: what is finer takes longer to draw than the result takes to compute
 _DPI = 120

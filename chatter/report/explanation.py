@@ -16,6 +16,7 @@ from chatter.explain.selection.discriminating_test import in_words
 from chatter.plots.explanation import plot_errors, plot_lobes_before_after, plot_terms
 from chatter.plots.residual_diagnostics import plot_findings
 from chatter.plots.style import write_png
+from chatter.report.parameters import parameter_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,6 +74,7 @@ def _templates() -> Environment:
     templates.filters |= {
         "number": _number,
         "percent": _percent,
+        "parameter": lambda one, name: parameter_row(name, one),
         "embedded": _embedded,
         "drawn": _drawn,
         "errors_drawn": plot_errors,

@@ -12,6 +12,7 @@ from chatter.compile.cutter import cutter_of
 from chatter.compile.inclined_axis import effective_diameter, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
+from chatter.description.formatting import to_digits
 from chatter.description.progress import Progress, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.units import rpm
@@ -170,12 +171,18 @@ class StabilityCheck(NotebookResult):
         if deciding:
             words = f"{words} by the linear analysis, not certain"
         if not self.stable:
-            at = f", {self.chatter_frequency:.0f} Hz" if np.isfinite(self.chatter_frequency) else ""
-            point = f"{point}{at} ({_KINDS[self.bifurcation]})"
+            point = f"{point}{self._chatter()}"
         if not deciding:
             return [f"{words}: {point}"]
         reasons = "; ".join(effect.because for effect in deciding)
         return [f"{words}: {point}", f"{reasons}{self._bound()}; `chatter simulate` decides"]
+
+    def _chatter(self) -> str:
+        """Frequency and kind of chatter; nothing of a growth that no number describes."""
+        frequency = self.chatter_frequency
+        if not frequency > 0.0:
+            return ""
+        return f", {frequency:.0f} Hz ({_KINDS[self.bifurcation]})"
 
     def _bound(self) -> str:
         """How low the limit of a cut that is called stable may lie, where a bound is known."""
@@ -201,11 +208,11 @@ class StabilityCheck(NotebookResult):
             *self._lowest(),
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
-            ["cutting speed", f"{60.0 * speed:.4g} m/min"],
+            ["cutting speed", f"{to_digits(60.0 * speed, 4)} m/min"],
             *effective,
             *self._engagement(),
             *self._life(speed),
-            ["feed rate", f"{60e3 * self.case.feed_speed:.4g} mm/min"],
+            ["feed rate", f"{to_digits(60e3 * self.case.feed_speed, 4)} mm/min"],
             ["method", self.method],
         ]
 

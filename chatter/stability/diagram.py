@@ -225,6 +225,14 @@ class StabilityDiagram(SavedResult):
         return depth_margin(self.neglected_at_all_speeds)
 
     @property
+    def why_no_pocket(self) -> str:
+        """Why the linear limits name no pocket at all; empty where they could."""
+        if lowest_factor(self.neglected_at_all_speeds) > 0.0:
+            return ""
+        reasons = "; ".join(one.because for one in self.neglected_at_all_speeds)
+        return f"{reasons}, and no linear limit bounds the true one"
+
+    @property
     def lowest_depth(self) -> float:
         """Depth, m, below which any speed is stable, with what edge forces may take off."""
         return self.lowest.critical_depth * lowest_factor(self.neglected_at_all_speeds)

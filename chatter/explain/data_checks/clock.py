@@ -5,6 +5,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.formatting import to_digits
 from chatter.explain.data_checks.finding import (
     NOTE,
     RUN,
@@ -113,7 +114,7 @@ def _even(run: Run, time: NDArray[np.float64]) -> list[SignalFinding]:
         found.append(SignalFinding(SAMPLES, run.name, "time", description))
     scatter = float(np.std(steps[steps <= HOLE * step])) / step
     if scatter > _JITTER:
-        description = f"{run.name}: the clock jitters by {100.0 * scatter:.2g} % of its step"
+        description = f"{run.name}: the clock jitters by {to_digits(100.0 * scatter)} % of its step"
         found.append(SignalFinding(NOTE, run.name, "time", description))
     return found
 

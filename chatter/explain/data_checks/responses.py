@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
+from chatter.description.formatting import to_digits
 from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SignalFinding, of_all_or_some
 from chatter.explain.data_checks.scale import thousand
 from chatter.explain.measurement import Measurement, Run
@@ -140,7 +141,8 @@ def disagreeing_responses(measurement: Measurement) -> list[SignalFinding]:
             if apart[index] > max(_DIFFERS, _BEYOND * others):
                 description = (
                     f"{run.name}: differs from the other FRFs {what} by "
-                    f"{100.0 * apart[index]:.0f} %, they among each other by {100.0 * others:.2g} %"
+                    f"{100.0 * apart[index]:.0f} %, they among each other by "
+                    f"{to_digits(100.0 * others)} %"
                 )
                 found.append(SignalFinding(RUN, run.name, "real, imag", description))
     return found

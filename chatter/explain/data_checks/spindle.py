@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.formatting import signed
 from chatter.description.units import rpm
 from chatter.explain.data_checks.finding import NOTE, RUN, SignalFinding, of_all_or_some
 from chatter.explain.measurement import Measurement, Run
@@ -81,7 +82,7 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
     if ratios:
         about += (
             f": the spindle turned at {np.median(ratios):.4g} times what the case declares "
-            f"({100.0 * (np.median(ratios) - 1.0):+.2g} %)"
+            f"({signed(100.0 * (np.median(ratios) - 1.0))} %)"
         )
     # runs that agree on how far it is off speak for those that are too short to show it
     agree = len(ratios) >= _AGREEING and np.ptp(ratios) < _WRONG

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from chatter.description.formatting import to_digits
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.regression import Regression, best_period, best_regression, panel_of
 from chatter.explain.residuals.residual import Residual
@@ -42,7 +43,7 @@ def over_variable(name: str) -> Diagnostic:
 
 def _sentence(variable: Variable, regressions: Sequence[Regression]) -> str:
     shares = ", ".join(
-        f"{100.0 * one.found.share:.2g} % of the residual of {one.target.channel}"
+        f"{to_digits(100.0 * one.found.share)} % of the residual of {one.target.channel}"
         for one in regressions
     )
     first = regressions[0]
@@ -69,8 +70,8 @@ def over_period(name: str) -> Diagnostic:
         length = found.length * variable.scale
         if found.significant:
             words = (
-                f"{100.0 * found.share:.2g} % of {target.phrase} repeats over {variable.label} "
-                f"with a period of {length:.3g} {variable.unit}."
+                f"{to_digits(100.0 * found.share)} % of {target.phrase} repeats over "
+                f"{variable.label} with a period of {length:.3g} {variable.unit}."
             )
         numbers = {
             "channel": target.channel,

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.formatting import signed
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.dependence import Dependence, Sample, bins_of, dependence, edges_of
 from chatter.explain.residuals.finding import Curve, Curves
@@ -72,8 +73,8 @@ class Regression(NamedTuple):
         """Coefficient of a bin, in words."""
         target, value = self.target, float(self.found.coefficients[index])
         if target.form.relative:
-            return f"{target.scale * value:+.2g} % of what is predicted"
-        return f"{target.scale * value:+.3g} {target.unit} {target.form.description}".strip()
+            return f"{signed(target.scale * value, 2)} % of what is predicted"
+        return f"{signed(target.scale * value, 3)} {target.unit} {target.form.description}".strip()
 
     def curve(self, variable: Variable) -> Curve:
         """Coefficients over the variable, with their standard errors, as reported."""

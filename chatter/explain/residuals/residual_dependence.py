@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.formatting import to_digits
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.dependence import Dependence, bins_of, dependence, edges_of
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Map
@@ -108,7 +109,7 @@ def _numbers(residual: Residual, target: Target, share: float, **more: Any) -> d
 
 def _by_one(residual: Residual, regression: Regression, variable: Variable) -> ResidualDependence:
     target, share = regression.target, regression.found.share
-    words = f"{100.0 * share:.2g} % of {target.phrase} depends on {variable.label}."
+    words = f"{to_digits(100.0 * share)} % of {target.phrase} depends on {variable.label}."
     numbers = _numbers(residual, target, share, over=[variable.name])
     finding = Finding(_NAME, words, True, numbers, panel_of(variable, [regression]))
     return _with_table(finding, regression, variable)
@@ -143,8 +144,8 @@ def _by_period(
     coefficients = shape.found.coefficients * target.scale
     half = 0.5 * float(np.nanmax(coefficients) - np.nanmin(coefficients))
     words = (
-        f"{100.0 * found.share:.2g} % of {target.phrase} depends on {variable.label}, with a "
-        f"period of {period} and an amplitude of {half:.2g} {target.unit}."
+        f"{to_digits(100.0 * found.share)} % of {target.phrase} depends on {variable.label}, "
+        f"with a period of {period} and an amplitude of {to_digits(half)} {target.unit}."
     )
     numbers = _numbers(residual, target, found.share, over=[variable.name], period=length)
     label = f"{variable.name} within a period of {period} [{variable.unit}]"
@@ -197,7 +198,7 @@ def _by_two(residual: Residual, regression: _OnTwo) -> ResidualDependence:
     x, y = first.reported(edges[0]), second.reported(edges[1])
     values = target.scale * found.coefficients.reshape(y.size - 1, x.size - 1)
     words = (
-        f"{100.0 * found.share:.2g} % of {target.phrase} depends on {first.label} and "
+        f"{to_digits(100.0 * found.share)} % of {target.phrase} depends on {first.label} and "
         f"{second.label} together."
     )
     numbers = _numbers(residual, target, found.share, over=[first.name, second.name])

@@ -10,6 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from chatter.description.formatting import to_digits
 from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
@@ -185,7 +186,7 @@ def _sentence(reported: dict, by_channel: dict[str, list[Shares]], numbers: dict
     for index in np.argsort(shares)[::-1]:
         if not sure[index]:
             continue
-        words = f"{100.0 * shares[index]:.2g} % {_AT[index]}"
+        words = f"{to_digits(100.0 * shares[index])} % {_AT[index]}"
         if index in (0, 1):
             orders = numbers[channel]["strongest_orders"]
             words += f" (strongest orders of the spindle: {', '.join(map(str, orders))})"

@@ -81,13 +81,24 @@ class Optimum(SavedResult):
         if self.best is not None:
             return ""
         if self.candidates:
-            return "no candidate of the linear search holds all limits in the time domain"
+            return self._why_no_candidate()
         if self.over_radial_depths:
             return (
                 "no cut is stable and keeps all limits with a probability of "
                 f"{self.limits.confidence:.3g}"
             )
         return why_nothing(self.exclusions)
+
+    def _why_no_candidate(self) -> str:
+        """What the time domain says of the candidates, and how to search further."""
+        point = self.candidates[0].point
+        return (
+            "no candidate of the linear search holds all limits in the time domain, nor a little "
+            f"less deep, such as {1e3 * point.axial_depth:.3g} mm at "
+            f"{rpm(point.spindle_speed):.0f} rpm; `chatter check --method time-domain` computes "
+            "the limit that holds at a speed, and optimum.depths.to, "
+            f"{1e3 * self.limits.depths[-1]:.3g} mm here, keeps the search below it"
+        )
 
     def summary(self) -> dict:
         """Return the content of summary.json."""

@@ -74,6 +74,13 @@ def _numbers(values: Array) -> list[float | None]:
     ]
 
 
+def _verdict(operating: Mapping[str, Any]) -> str:
+    """Verdict on the operating point of a diagram, as `chatter check` says it."""
+    if not operating["certain"]:
+        return "not certain"
+    return "stable" if operating["stable"] else "chatter"
+
+
 def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del only
     from chatter.stability.lobes import lobes
@@ -95,7 +102,7 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
             "lowest_limit_speed_rpm": lowest["spindle_speed_rpm"],
             "max_axial_depth_mm": summary["max_axial_depth_mm"],
         },
-        {"verdict": "stable" if operating["stable"] else "chatter"},
+        {"verdict": _verdict(operating)},
         (curve,),
     )
 
@@ -112,7 +119,7 @@ def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Ou
             "spectral_radius": summary["spectral_radius"],
             "max_axial_depth_mm": summary["limit"]["max_axial_depth_mm"],
         },
-        {"verdict": "stable" if summary["stable"] else "chatter"},
+        {"verdict": summary["verdict"]},
     )
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.studies.whatif.measures import Outcome, Quantity
+from chatter.studies.whatif.measures import Curve, Outcome, Quantity
 
 if TYPE_CHECKING:
     from chatter.studies.whatif.whatif_study import WhatIf
@@ -18,6 +19,13 @@ _NO_CHANGE = 5e-4
 _NOTABLE = 0.01
 #: from this relative change on the ratio is reported instead
 _MANY_TIMES = 2.0
+_PEAK_FREQUENCY = "peak_frequency_Hz"
+#: peaks whose frequencies differ by less may be the same
+_NEAR = 0.15
+#: points that a sentence names
+_MOST_NAMED = 3
+#: of measures that are simulated: what in their numbers is that of chatter, where the cut chatters
+_OF_THE_CUT = {"forces": "forces, power and motion", "surface": "motion and surface"}
 
 
 def title_of(study: WhatIf, quantity: Quantity) -> str:
@@ -69,7 +77,24 @@ def sentences(study: WhatIf) -> list[str]:
         others = _others(study, index)
         why = f" as {one.path} goes from {one.values[0].label} to {one.values[-1].label}{others}"
         found += _changes(study, study.outcomes[first], study.outcomes[last], why)
-    return found + _extremes(study) + _without_effect(study) + failures(study)
+    return [
+        *found, *_extremes(study), *_chattering(study), *_without_effect(study), *failures(study),
+    ]  # fmt: skip
+
+
+def _chattering(study: WhatIf) -> list[str]:
+    """Sentence on points whose numbers are those of chatter, of no settled cut."""
+    numbers = _OF_THE_CUT.get(study.measure.name)
+    if numbers is None:
+        return []
+    found = [k for k, one in enumerate(study.outcomes) if one.words.get("verdict") == "chatter"]
+    if not found:
+        return []
+    if len(found) == len(study.outcomes):
+        return [f"the cut chatters at every point: {numbers} are those of chatter"]
+    where = "; ".join(_where(study, k) for k in found[:_MOST_NAMED])
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    return [f"the cut chatters at {where}{more}: {numbers} there are those of chatter"]
 
 
 def _without_effect(study: WhatIf) -> list[str]:
@@ -137,11 +162,42 @@ def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[s
     for key, quantity in _changed_quantities(study, before, after).items():
         pair = value_text(quantity, before, key), value_text(quantity, after, key)
         share = change_text(before.numbers.get(key), after.numbers.get(key))
+        if key == _PEAK_FREQUENCY and _is_another_peak(before, after):
+            share = ", which is another peak,"
         found.append(f"{title_of(study, quantity)}: {pair[0]} -> {pair[1]}{share}{why}")
     for key in before.words:
         if before.words[key] != after.words.get(key):
             found.append(f"{key}: {before.words[key]} -> {after.words.get(key)}{why}")
     return found
+
+
+def _is_another_peak(before: Outcome, after: Outcome) -> bool:
+    """Whether the highest peak of FRFs is another one: both are there before and after."""
+    places = [one.numbers[_PEAK_FREQUENCY] for one in (before, after)]
+    if None in places or _is_near(*places) or before.words != after.words:
+        return False
+    name = before.words.get("highest")
+    return all(
+        _has_peak(curve, place)
+        for one in (before, after)
+        for curve in one.curves
+        if curve.name == name
+        for place in places
+    )
+
+
+def _has_peak(curve: Curve, frequency: float) -> bool:
+    """Whether a curve has a maximum near a frequency."""
+    y = [-math.inf if value is None else value for value in curve.y]
+    return any(
+        y[k - 1] < y[k] >= y[k + 1] and _is_near(curve.x[k], frequency)
+        for k in range(1, len(y) - 1)
+        if curve.x[k] is not None
+    )
+
+
+def _is_near(one: float, other: float) -> bool:
+    return abs(one - other) <= _NEAR * max(abs(one), abs(other))
 
 
 def _changed_quantities(study: WhatIf, before: Outcome, after: Outcome) -> Mapping[str, Quantity]:

@@ -46,12 +46,18 @@ largest_chip = 1.5
 """
 
 
+def of_names(case):
+    """Notes on names; others are of keys that nothing uses."""
+    return [note for note in case.notes if "has no effect" not in note]
+
+
 def test_every_old_name_of_a_case_is_read_with_a_note():
     case = loads(OLD, "case.toml")
-    assert len(case.notes) == len(CASE)
+    notes = of_names(case)
+    assert len(notes) == len(CASE)
     for one in CASE:
-        assert any(f'"{one.old}" is now called "{one.new}"' in note for note in case.notes), one
-    assert case.notes[0].startswith('case.toml: contact.full_at: "full_at" is now called')
+        assert any(f'"{one.old}" is now called "{one.new}"' in note for note in notes), one
+    assert notes[0].startswith('case.toml: contact.full_at: "full_at" is now called')
     assert case.contact.full_engagement_share == 0.5
     assert case.friction["guide"].spec().hysteresis_slope == 1e6 / 20.0
     assert case.friction["table"].spec().static == 5.0
@@ -64,7 +70,7 @@ def test_every_old_name_of_a_case_is_read_with_a_note():
 
 def test_what_is_written_back_has_the_new_names_alone():
     text = loads(OLD).to_toml()
-    assert loads(text).notes == ()
+    assert of_names(loads(text)) == []
     assert loads(text) == loads(OLD)
     assert "# soon" in text
 
@@ -120,10 +126,10 @@ def test_every_old_name_of_a_machine_is_read_with_a_note():
 )
 def test_patches_take_old_names_too(path, value, read, expected):
     new = Case.from_dict(loads(loads(OLD).to_toml()).model_dump(by_alias=True, exclude_unset=True))
-    assert new.notes == ()
+    assert of_names(new) == []
     patched = new.patch({path: value})
     assert patched.get(read) == expected
-    assert len(patched.notes) == 1
+    assert len(of_names(patched)) == 1
     assert loads(patched.to_toml()).get(read) == expected
 
 

@@ -184,7 +184,8 @@ def test_one_syntax_of_ranges(tmp_path):
     swept = chatter_command("bifurcation", *asked, "--out", tmp_path / "b", "--json")
     assert swept.exit_code == 0, swept.output
     assert swept.stdout.count('"verdict"') == 4
-    assert "0.2 mm: " in chatter_command("bifurcation", *asked, "--out", tmp_path / "b").stdout
+    words = chatter_command("bifurcation", *asked, "--out", tmp_path / "b").stdout
+    assert "0.2 mm to 0.8 mm: " in words
 
 
 BALL = text().replace('kind = "end mill"', 'kind = "ball"').replace('"16 mm"', '"10 mm"')

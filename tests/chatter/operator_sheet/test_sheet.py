@@ -54,7 +54,9 @@ def test_files(found, tmp_path):
     assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
     book = openpyxl.load_workbook(tmp_path / "sheet.xlsx")
     rows = list(book["cuts"].values)
-    assert rows[1][1:4] == ("as stated", "stable", 4500)
+    # edge forces may lower the limit of 0.48 mm by 18 %: the sheet says no more than check does
+    assert rows[1][1:4] == ("as stated", chatter.check(STEEL).verdict, 4500)
+    assert rows[1][2] == "not certain"
     assert len(rows) == 1 + sum(len(one.cuts) for one in found.cases)
     assert book["limits 1"].max_row == 401
     summary = json.loads((tmp_path / "summary.json").read_text())

@@ -166,7 +166,7 @@ def test_onset_is_told(case_file):
     result = run(case_file, 'cut.axial_depth="3.4 mm..4.2 mm"', "--count", "2")
     assert result.exit_code == 0, result.output
     assert "3.4 mm: stable" in result.stdout
-    assert "from 4.2 mm: chatter at 1000.0 Hz (flip)" in result.stdout
+    assert "4.2 mm: chatter at 1000.0 Hz (flip)" in result.stdout
 
 
 @pytest.mark.parametrize(

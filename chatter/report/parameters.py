@@ -1,0 +1,30 @@
+"""Parameters of effects as people read them: SI inside, units of the shop on the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+#: SI unit -> units for larger and larger values: from which value on, name, number of it in one
+#: of SI
+_READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
+    "m": ((0.0, "um", 1e6), (1e-3, "mm", 1e3)),
+    "rad": ((0.0, "deg", 180.0 / math.pi),),
+    "Pa": ((0.0, "MPa", 1e-6),),
+    # edges have some N/mm, joints and bristles some N/um
+    "N/m": ((0.0, "N/mm", 1e-3), (1e6, "N/um", 1e-6)),
+    "m/s": ((0.0, "mm/s", 1e3),),
+    "N/m/s": ((0.0, "N/mm/min", 60e-3),),
+    "1/s": ((0.0, "1/min", 60.0),),
+}
+
+
+def parameter_row(name: str, one: Mapping[str, Any]) -> list[str]:
+    """Name, value, unit and interval of a parameter, given as its value, SI unit and `ci95`."""
+    unit, factor = str(one["unit"]), 1.0
+    for least, read_in, of_si in _READ_IN.get(unit, ()):
+        if abs(one["value"]) >= least:
+            unit, factor = read_in, of_si
+    low, high = (f"{factor * end:.4g}" for end in one["ci95"])
+    return [name, f"{factor * one['value']:.4g}", unit, f"{low} to {high}"]

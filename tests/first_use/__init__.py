@@ -1,0 +1,1 @@
+"""What people met in their first hour with the program, and must not meet again."""

@@ -1,0 +1,127 @@
+"""Pictures answer what they are looked at for: no staircases, no white, no empty space."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.collections import QuadMesh
+
+import chatter
+from chatter.description.units import from_rpm
+from chatter.explain.kinds.kind import Cuts
+from chatter.explain.lobes_before_after import LobesBeforeAfter
+from chatter.plots.explanation import plot_lobes_before_after
+from chatter.plots.frf import plot_frf
+from chatter.plots.stability_diagram import plot_limits
+from chatter.studies.bifurcation import BifurcationDiagram, BifurcationPoint
+from chatter.studies.diagram_over_axes import lobes_over
+from tests.first_use.shop import cut
+
+
+@pytest.fixture(scope="module")
+def over_width():
+    return lobes_over(cut(), "cut.radial_depth=2 mm..16 mm:6")
+
+
+def fill_of(axes):
+    """Centres of the cells of the fill, and what they are: 0 stable, 1 chatter, 2 not searched."""
+    (mesh,) = (one for one in axes.collections if isinstance(one, QuadMesh))
+    corners = mesh.get_coordinates()
+    centres = 0.25 * (corners[1:, 1:] + corners[:-1, 1:] + corners[1:, :-1] + corners[:-1, :-1])
+    return (
+        centres[0, :, 0],
+        centres[:, 0, 1],
+        np.asarray(mesh.get_array()).reshape(centres.shape[:2]),
+    )
+
+
+def labels_of(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+def test_colour_ends_at_the_curve_between_values_too(over_width):
+    """`lobes --x`: a staircase of colour beside a smooth curve."""
+    x, y, kind = fill_of(plot_limits(over_width).axes[0])
+    values, limits = over_width.axis.values, over_width.limits.critical_depth * 1e3
+    drawn = np.interp(x, values, limits)
+    highest_stable = np.array([y[column == 0].max() for column in kind.T])
+    # to within a row of the fill
+    assert np.abs(highest_stable - drawn).max() <= 1.01 * (y[1] - y[0])
+
+
+def test_what_is_not_searched_is_in_the_legend(over_width):
+    """White that is not explained."""
+    axes = plot_limits(over_width).axes[0]
+    kind = fill_of(axes)[2]
+    assert set(np.unique(kind)) <= {0, 1, 2}
+    assert ("not searched" in labels_of(axes)) == bool((kind == 2).any())
+    shallow = lobes_over(
+        cut(**{"lobes.depths": {"to": "0.6 mm"}}), "cut.radial_depth=2 mm..16 mm:6"
+    )
+    axes = plot_limits(shallow).axes[0]
+    assert ("not searched" in labels_of(axes)) == bool((fill_of(axes)[2] == 2).any())
+
+
+def test_the_depth_axis_ends_a_little_above_the_lobes(over_width):
+    """The depth axis went to 30 mm for lobes of 2 mm."""
+    for diagram in (over_width, chatter.lobes(cut())):
+        top = plot_limits(diagram).axes[0].get_ylim()[1]
+        highest = 1e3 * diagram.limits.critical_depth.max()
+        assert highest < top <= 1.3 * highest
+
+
+def test_a_bifurcation_ends_where_its_points_end():
+    """The picture ended at 0.9 mm though points to 1.2 mm were judged."""
+    section = np.zeros((3, 3))
+    points = [
+        BifurcationPoint(
+            1e-3 * depth, section if depth < 1.0 else section[:0], "chatter", "hopf", 9e2
+        )
+        for depth in (0.3, 0.6, 0.9, 1.2)
+    ]
+    figure = BifurcationDiagram(cut(), "cut.axial_depth", tuple(points)).plot()
+    low, high = figure.axes[0].get_xlim()
+    assert low <= 0.3
+    assert high >= 1.2
+
+
+def before_after(depths, searched):
+    diagram = chatter.lobes(cut(**{"lobes.depths": {"to": f"{searched} mm"}}))
+    cuts = Cuts(np.full(len(depths), from_rpm(1500.0)), 1e-3 * np.array(depths),
+                np.array([True] * len(depths)))  # fmt: skip
+    return LobesBeforeAfter({"declared": diagram}, cuts, ())
+
+
+@pytest.mark.parametrize(("depths", "searched"), [((0.1, 3.0), 4.0), ((2.0, 29.0), 9.0)])
+def test_verdicts_stand_with_the_limit_on_an_axis_that_can_be_read(depths, searched):
+    """Verdicts without a limit curve; one tick on a logarithmic axis."""
+    figure = plot_lobes_before_after(before_after(depths, searched))
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    assert "limit, declared" in [line.get_label() for line in axes.lines]
+    low, high = axes.get_ylim()
+    labelled = [
+        tick for which in ("major", "minor")
+        for tick in axes.yaxis.get_ticklocs(minor=which == "minor")
+        if low <= tick <= high
+    ]  # fmt: skip
+    shown = [
+        text.get_text()
+        for text in (*axes.yaxis.get_ticklabels(), *axes.yaxis.get_ticklabels(minor=True))
+        if text.get_text() and low <= text.get_position()[1] <= high
+    ]
+    assert len(labelled) >= 3
+    assert len(shown) >= 2
+
+
+def test_the_legend_of_frfs_covers_no_curve():
+    from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
+    from dynamics.frf.container import Frf
+
+    frequency = np.linspace(10.0, 500.0, 200)
+    one = Frf(frequency, 1e-7 / (1.0 - (frequency / 200.0) ** 2 + 0.05j))
+    figure = plot_frf(FrfResult("machine", (FrfCurve("x", "", one),)))
+    assert figure.axes[0].get_legend() is None
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["x"]
+    assert math.isfinite(legend.get_window_extent().height)
