@@ -125,10 +125,11 @@ def test_declared_lobes_forbid_tests_that_were_stable(tmp_path):
 def test_compare_tells_errors_over_the_noise(tmp_path):
     result = compare(measurement("explain-axis"))
     heading, *rows = result.save(tmp_path)[0].read_text().splitlines()
-    assert heading.split(",")[-2:] == ["noise [SI]", "rms error over noise"]
+    assert heading.split(",")[2:4] == ["unit", "rms error"]
+    assert heading.split(",")[-2:] == ["noise", "rms error over noise"]
     assert len(rows) == 6
-    run, channel, error, _, noise, over = rows[0].split(",")
-    assert (run, channel) == ("move01.npz", "force")
+    run, channel, unit, error, _, noise, over = rows[0].split(",")
+    assert (run, channel, unit) == ("move01.npz", "force", "N")
     # near rest little is known of the direction, and samples count less
     assert 1.0 < float(over) < float(error) / float(noise)
-    assert all(0.2 < float(row.split(",")[4]) < 5.0 for row in rows)
+    assert all(0.2 < float(row.split(",")[5]) < 5.0 for row in rows)
