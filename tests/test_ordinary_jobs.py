@@ -104,6 +104,47 @@ def test_forces_and_surfaces_by_hand():
     assert wide + fast == pytest.approx(67.87, rel=2e-3)
 
 
+def rubbed(radius, angle, length, step):
+    """Integral over an edge of radius times arc, mm^2: radii, mm, over an angle of its profile."""
+    kappa = (np.arange(100_000) + 0.5) / 100_000 * angle
+    r = radius(kappa)
+    arc = np.where(step >= 2.0 * r, np.pi, np.arccos(np.clip(1.0 - step / r, -1.0, 1.0)))
+    return float(np.mean(r * arc)) * length
+
+
+def test_tools_of_other_shapes_by_hand():
+    teeth = 4.0 / (2.0 * math.pi)
+    # a ball of 10 mm, 0.3 mm deep and beside its pass
+    z = (np.arange(100_000) + 0.5) / 100_000 * 0.3
+    r = np.sqrt(10.0 * z - z**2)
+    area = float(np.mean(np.minimum(0.3, 2.0 * r))) * 0.3
+    angle = math.acos(1.0 - 0.3 / 5.0)
+    path = rubbed(lambda kappa: 5.0 * np.sin(kappa), angle, 5.0 * angle, 0.3)
+    chip, edge = 1900.0 * area * 0.38 / 60.0, teeth * 25.0 * 0.2 * path
+    assert f"{area:.4f} mm² · 380 mm/min = {chip:.3f} W" in PAGE
+    assert f"{path:.3f} mm² with r = 5 mm sin κ: {edge:.3f} W" in PAGE
+    assert f"power {chip + edge:.3f} W mean" in PAGE
+    assert f"= {1e3 * (5.0 - math.sqrt(25.0 - 0.15**2)):.2f} um" in PAGE
+    # a bull nose of 2 mm, 1 mm deep
+    angle = math.acos(1.0 - 1.0 / 2.0)
+    path = rubbed(lambda kappa: 6.0 + 2.0 * np.sin(kappa), angle, 2.0 * angle, 4.0)
+    chip, edge = 1900.0 * 4.0 * 0.38 / 60.0, teeth * 25.0 * 0.125 * path
+    assert f"{path:.2f} mm², is {edge:.2f} W" in PAGE
+    assert f"power {chip + edge:.2f} W mean" in PAGE
+    # a taper: as wide as its radius at every height, so that the arc is a quarter of a turn
+    slope = math.tan(math.radians(10.0))
+    wide = 4.0 + slope
+    length = 2.0 / math.cos(math.radians(10.0))
+    chip, edge = (
+        1900.0 * 2.0 * wide * 0.38 / 60.0,
+        teeth * 25.0 * 0.25 * wide * 0.5 * math.pi * length,
+    )
+    assert f"{wide:.3f} mm in the mean" in PAGE
+    assert f"= {chip:.1f} W. The edge is" in PAGE
+    assert f"the arc: {edge:.1f} W" in PAGE
+    assert f"power {chip + edge:.1f} W mean" in PAGE
+
+
 def test_limits_by_hand():
     stiffness, damping = 12e3, 0.03  # N/mm
     ratio = np.linspace(0.9, 1.3, 400001)

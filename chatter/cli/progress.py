@@ -94,8 +94,12 @@ class RunningWork:
     def line(self) -> str:
         """Line on what is being done and how far it is."""
         done, total = self.counts
-        if not total:
-            return f"{self.description}: {elapsed_in_words(self.elapsed)} so far"
+        so_far = f"{elapsed_in_words(self.elapsed)} so far"
+        if not total or (total == 1 and not done):
+            return f"{self.description}: {so_far}"
+        if not done:
+            # two lines alike would look as if nothing went on
+            return f"{self.description}: 0 of {total}, {so_far}"
         if done >= total and self._newest is not None:
             since = in_words(self._clock() - self._newest[0])
             return f"{self.description}: all {total} done, evaluating the result for {since}"

@@ -33,7 +33,7 @@ def test_the_time_left_is_that_of_the_pace_so_far(clock):
     assert work.line() == "limits: 0 s so far"
     work(0, 200)
     clock.now += 10.0
-    assert work.line() == "limits: 0 of 200 (0%)"
+    assert work.line() == "limits: 0 of 200, 10 s so far"
     work(50, 200)
     # 50 parts in 10 s: 150 more take 30 s
     assert work.remaining() == pytest.approx(30.0)
@@ -43,6 +43,16 @@ def test_the_time_left_is_that_of_the_pace_so_far(clock):
     assert work.remaining() == pytest.approx(26.0)
     clock.now += 40.0
     assert work.remaining() == 0.0
+
+
+def test_one_part_alone_is_no_measure_of_how_far_it_is(clock):
+    """ "critical depth at this speed: 0 of 1 (0%)", again and again."""
+    work = RunningWork("critical depth", clock)
+    work(0, 1)
+    clock.now += 17.0
+    assert work.line() == "critical depth: 17 s so far"
+    clock.now += 15.0
+    assert work.line() == "critical depth: 32 s so far"
 
 
 def test_what_an_earlier_run_has_finished_is_not_pace(clock):
