@@ -39,6 +39,7 @@ KEYS = (
 _ONE_KIND_KEYS = tuple(key for key in KEYS if key != "part")
 PART_KEYS = ("title", "kind", "points", "run", "idle_power", "record", "channels")
 SET_UP_KEYS = ("title", "kind", "case", "part", "tolerance", "next_measurement")
+_DESCRIPTION = "measurement.toml"
 #: samples that a part of a record has at the least
 _LEAST_SAMPLES = 2
 #: sections of a case that a short key of a run may mean
@@ -55,7 +56,9 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     path = Path(folder)
     if path.is_file() and path.suffix.lower() != ".toml":
         return _only_run(path, case)
-    path = path if path.is_file() else path / "measurement.toml"
+    if path.is_dir() and not (path / _DESCRIPTION).exists():
+        raise InputError(_without_description(path))
+    path = path if path.is_file() else path / _DESCRIPTION
     content = _content(path)
     name = content.get("kind")
     if not isinstance(name, str) or name not in KINDS:
@@ -74,6 +77,19 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if name == SetUp.name:
         return _set_up(path, whole, content)
     return _of_one_kind(path, "", whole, content)
+
+
+def _without_description(folder: Path) -> str:
+    """Say that a folder has no measurement.toml, and where there is one, or what it holds."""
+    inside = sorted(one.parent for one in folder.glob(f"*/{_DESCRIPTION}"))
+    if inside:
+        return (
+            f"{folder}: has no {_DESCRIPTION}; there is one in {' and in '.join(map(str, inside))}"
+        )
+    return (
+        f"{folder}: has no {_DESCRIPTION}, which says what the files are of: kind (one of "
+        f'{", ".join(KINDS)}), case, and a [[run]] with file = "..." for each'
+    )
 
 
 def _kind_on(declared: Case, kind: str) -> str:

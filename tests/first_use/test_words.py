@@ -211,6 +211,20 @@ def test_the_documents_have_a_measurement_file():
     assert re.search(r'    kind = "milling"\n    case = "case.toml"\n', page)
 
 
+def test_a_folder_above_the_measurement_is_answered_by_the_one_below():
+    """The folder of an example: "measurement.toml: cannot be read: No such file or directory"."""
+    folder = chatter.examples()["explain-axis"].folder
+    result = chatter_command("compare", folder)
+    assert result.exit_code == 2
+    assert f"there is one in {folder / 'measurement'}" in " ".join(result.stderr.split())
+
+
+def test_a_folder_without_a_measurement_says_what_it_lacks(tmp_path):
+    result = chatter_command("explain", tmp_path)
+    assert result.exit_code == 2
+    assert "has no measurement.toml, which says what the files are of: kind" in result.stderr
+
+
 def test_calls_of_the_loop_are_there_in_python():
     """`chatter.compare` and `chatter.explain` were missing."""
     assert callable(chatter.compare)
