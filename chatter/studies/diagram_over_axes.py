@@ -17,6 +17,7 @@ from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
 from chatter.io.result_files import finite_or_none
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
+from chatter.stability.edge_force_onset import REPORTED_ONSET, edge_force_onset
 from chatter.stability.limit_curve import LimitCurve, first_crossings
 from chatter.stability.lobes import lobes as lobes_of
 from chatter.stability.lobes import map_over_speed
@@ -194,7 +195,7 @@ def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> Stabil
         axis=_diagram_axis(case, axis),
         limits=limits,
         max_depth=max_depth,
-        notes=_notes(_notes_of(found, reasons)),
+        notes=(*_notes(_notes_of(found, reasons)), *_note_on_edge_forces(found, labels)),
         reasons=reasons,
     )
 
@@ -224,7 +225,26 @@ def _limit_at(point: _Point) -> dict[str, Any]:
         "max_depth": float(depths[-1]),
         "notes": list(model.notes),
         "refused": [],
+        "edge_forces": edge_force_onset(model, case.cut.axial_depth) if chosen.is_linear else 0.0,
     }
+
+
+def _note_on_edge_forces(found: Sequence[dict[str, Any]], labels: Sequence[str]) -> tuple[str, ...]:
+    """Say by how much edge forces that set in at a chip of zero may lower the limits, and where."""
+    shares = [one.get("edge_forces", 0.0) for one in found]
+    most = max(range(len(shares)), key=shares.__getitem__)
+    if shares[most] < REPORTED_ONSET:
+        return ()
+    largest = (
+        f"may lower these limits by up to {shares[most]:.0%}"
+        if shares[most] < 1.0
+        else f"are up to {shares[most]:.3g} times as stiff as the chip"
+    )
+    return (
+        f"edge forces that set in at a chip of zero {largest} ({labels[most]}), which linear "
+        "methods leave out; `chatter check` says it of each cut, the time domain decides "
+        "(--method time-domain)",
+    )
 
 
 def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -> StabilityMap:

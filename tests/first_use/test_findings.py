@@ -128,6 +128,7 @@ FINDINGS = {
         f"{_NEGLECTED}::test_simulate_names_the_other_verdict_and_the_number_that_decides",
         f"{_NEGLECTED}::test_lobes_says_it_of_the_operating_point",
         f"{_HERE}/test_words::test_a_sheet_reports_its_speeds_and_says_what_is_not_certain",
+        f"{_HERE}/test_words::test_a_diagram_over_another_value_says_what_check_says_of_edge_forces",
     ),
     "a pocket in a valley": (
         f"{_POCKETS}::test_no_pocket_is_shallower_than_what_any_speed_allows",
@@ -199,6 +200,7 @@ FINDINGS = {
         f"{_HERE}/test_words::test_another_peak_is_no_change_of_a_frequency",
     ),
     "measurement.toml has no example": (
+        f"{_HERE}/test_words::test_a_folder_without_a_measurement_says_what_it_lacks",
         f"{_HERE}/test_words::test_the_documents_have_a_measurement_file",
     ),
     # waits

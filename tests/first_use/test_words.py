@@ -211,6 +211,24 @@ def test_the_documents_have_a_measurement_file():
     assert re.search(r'    kind = "milling"\n    case = "case.toml"\n', page)
 
 
+def test_a_diagram_over_another_value_says_what_check_says_of_edge_forces():
+    """`lobes --x` gave limits alone where `check` says that they may be a tenth lower."""
+    from chatter.studies.diagram_over_axes import lobes_over
+
+    widths = ("4 mm", "8 mm")
+    shares = [
+        chatter.check(cut(**{"cut.radial_depth": width})).neglected[0].share for width in widths
+    ]
+    (note,) = (
+        one for one in lobes_over(cut(), "cut.radial_depth=4 mm..8 mm:2").notes if "edge" in one
+    )
+    assert (
+        f"by up to {max(shares):.0%} (cut.radial_depth = {widths[int(np.argmax(shares))]})" in note
+    )
+    sharp = cut(**{"material.Kte": 0.0, "material.Kre": 0.0})
+    assert lobes_over(sharp, "cut.radial_depth=4 mm..8 mm:2").notes == ()
+
+
 def test_a_folder_above_the_measurement_is_answered_by_the_one_below():
     """The folder of an example: "measurement.toml: cannot be read: No such file or directory"."""
     folder = chatter.examples()["explain-axis"].folder

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 DEFAULT_COUNT = 5
 _MOST_VALUES = 2000
 _RELATIVE = re.compile(rf"^\s*(?:\+-|\+/-|±)\s*({NUMBER})\s*%\s*$")
+#: a range of whole numbers, such as those of teeth
+_WHOLE_RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*(?::\s*(\d+)\s*)?")
 _PLAIN = str.maketrans("", "", '"[]{}')
 _EXAMPLE = 'such as cut.axial_depth="1 mm, 2 mm" or cut.spindle_speed="3000 rpm..9000 rpm"'
 
@@ -84,6 +86,9 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
         raise InputError(f"--vary {path}: a value is empty in {formatted(given)}")
     if len(parts) == 1 and ".." in parts[0] and kind is not None:
         return _range(path, parts[0], kind, count)
+    whole = _WHOLE_RANGE.fullmatch(parts[0]) if len(parts) == 1 and kind is None else None
+    if whole:
+        parts = _whole_numbers(path, *(int(one) if one else None for one in whole.groups()))
     values = {part: parse_assignments([f"{path}={part}"])[path] for part in parts}
     _refuse_bare_speeds(path, values.values())
     _refuse_mixed(path, values, kind)
@@ -202,6 +207,17 @@ def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Vari
         for number in np.linspace(first, last, count)
     )
     return Variation(path, values, pair.unit)
+
+
+def _whole_numbers(path: str, low: int, high: int, count: int | None) -> list[str]:
+    """Numbers of a range of teeth or such: all, or so many of them, about even."""
+    if not low < high:
+        raise InputError(f"--vary {path}: the range is empty: {low} is not less than {high}")
+    every = high - low + 1
+    chosen = every if count is None else min(max(count, 2), every)
+    if chosen > _MOST_VALUES:
+        raise InputError(f"--vary {path}: {chosen} values; at most {_MOST_VALUES} are allowed")
+    return [str(round(one)) for one in np.linspace(low, high, chosen)]
 
 
 def _text(number: float, unit: str) -> str | float:

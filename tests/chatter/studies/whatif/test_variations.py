@@ -30,6 +30,15 @@ def test_ranges_are_even_and_end_where_they_say(case):
     assert len(numbers("cut.axial_depth=1 mm..4 mm", case)[1]) == 5
 
 
+def test_a_range_of_teeth_is_one_of_whole_numbers(case):
+    assert numbers("tool.teeth=2..5", case) == ("", [2.0, 3.0, 4.0, 5.0])
+    assert numbers("tool.teeth=2..6:3", case) == ("", [2.0, 4.0, 6.0])
+    # no tooth twice
+    assert numbers("tool.teeth=2..4:9", case) == ("", [2.0, 3.0, 4.0])
+    with pytest.raises(InputError, match="the range is empty"):
+        read_variation("tool.teeth=4..2", case)
+
+
 def test_shares_are_of_what_stands_in_every_place(case):
     one = read_variation("structure.mode[*].damping=+-20%", case)
     low, high = (patched(case, value.patch) for value in one.values)
