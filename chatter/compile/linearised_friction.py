@@ -1,6 +1,7 @@
 """Motion of a machine without strain, its frictions linearised about it, and FRFs with them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,17 +82,31 @@ def rigid_motion(machine: Machine, axes: Mapping[str, float]) -> NDArray[np.floa
     Travel (or velocity) of controlled axes, m; the others stay. InputError if an axis is not under
     control, or cannot move without strain.
     """
+    return rigid_motions(machine, [axes])[0]
+
+
+def rigid_motions(
+    machine: Machine, several: Sequence[Mapping[str, float]]
+) -> list[NDArray[np.float64]]:
+    """Motions as `rigid_motion` gives each, by one modal analysis of the machine."""
     known = {drive.axis for drive in machine.drives}
-    for name in axes:
+    for name in chain(*several):
         if name not in known:
             there = ", ".join(f'"{one}"' for one in sorted(known)) or "none"
             raise InputError(
                 f'axis "{name}" cannot be moved: it is not under control; there are {there}'
             )
+    if not machine.drives:
+        return [np.zeros(machine.structure.size) for _ in several]
     modes = undamped_modes(machine.structure)
     free = modes.shapes[:, modes.frequency == 0.0]
-    if not machine.drives:
-        return np.zeros(machine.structure.size)
+    return [_free_motion(machine, free, axes) for axes in several]
+
+
+def _free_motion(
+    machine: Machine, free: NDArray[np.float64], axes: Mapping[str, float]
+) -> NDArray[np.float64]:
+    """Motion (n,) of the free motions (n, k) in which axes move by given lengths."""
     rows = np.array([drive.row for drive in machine.drives])
     wanted = np.array(
         [

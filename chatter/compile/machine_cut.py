@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import rigid_motion
-from chatter.compile.machine_parts import assembled_machine, machine_parts
+from chatter.compile.linearised_friction import rigid_motions
+from chatter.compile.machine_parts import assembled_machine, machine_points
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import MachineFile
@@ -171,7 +171,7 @@ def cut_directions(case: Case) -> NDArray[np.float64]:
 
 
 def _ends(file: MachineFile, positions: Mapping[str, float]):
-    points = {point.name: point for point in machine_parts(file, positions).points}
+    points = {point.name: point for point in machine_points(file, positions)}
     workpiece = "ground" if file.workpiece is None else points[file.workpiece].body
     return points[file.tool_point], workpiece
 
@@ -233,7 +233,8 @@ def _travels(
     controlled = [name for name in axes if name in {drive.axis for drive in machine.drives}]
     if not controlled:
         return {}
-    ways = np.array([tool @ rigid_motion(machine, {name: 1.0}) for name in controlled]).T
+    motions = rigid_motions(machine, [{name: 1.0} for name in controlled])
+    ways = (tool @ np.array(motions).T).reshape(3, len(controlled))
     found = {}
     for way, wanted in zip("xyz", np.eye(3), strict=True):
         share, *_ = np.linalg.lstsq(ways, wanted, rcond=None)

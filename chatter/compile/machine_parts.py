@@ -24,7 +24,7 @@ from dynamics.machine.description import (
     machine,
 )
 from dynamics.reduction.imported_part import ImportedPart, reduced_part
-from dynamics.structure.bodies import Connector
+from dynamics.structure.bodies import Connector, Point
 from dynamics.structure.imported import tied_structure
 from dynamics.structure.spring_coupling import Coupling, Term
 from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
@@ -107,9 +107,7 @@ def machine_parts(
     return MachineParts(
         bodies=[*of["body"], *imported],
         connectors=connectors,
-        points=[
-            point.part(name, composition.shift(point.on)) for name, point in file.point.items()
-        ],
+        points=_points(composition),
         beams=of["beam"],
         couplings=_contact(composition) if in_cut else (),
         axes=list(axes.values()),
@@ -127,6 +125,20 @@ def machine_parts(
         allowed_rigid_motions=file.allowed_rigid_motions,
         highest_frequency=file.highest_frequency,
     )
+
+
+def machine_points(
+    file: MachineFile, positions: Mapping[str, float | str] | None = None
+) -> list[Point]:
+    """Points of a machine at positions of its axes, as `machine_parts` has them."""
+    return _points(Composition(file, file.positions(positions or {})))
+
+
+def _points(composition: Composition) -> list[Point]:
+    return [
+        point.part(name, composition.shift(point.on))
+        for name, point in composition.file.point.items()
+    ]
 
 
 def _made(file: MachineFile, key: str, make: Callable[[], Made]) -> Made:

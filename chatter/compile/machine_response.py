@@ -118,7 +118,8 @@ def _machine_cut(case: Case) -> MachineCut:
 @lru_cache(_KEPT_RESPONSES)
 def _responses(case: Case, moving: bool, places: tuple[str, ...], lines: bytes) -> ComplexArray:
     """Receptance (m, p, p) of the tool in x, y, z and of other places."""
-    cut = _machine_cut(case)
+    # the machine is the same whatever it cuts, and at rest
+    cut = _machine_cut(case.model_copy(update={"tool": None, "cut": None, "material": None}))
     velocity = moving_axes(case, cut) if moving else {}
     # the vibration of a blow is small: frictions stick unless an amplitude is stated
     stated = None if case.structure.friction_amplitude is None else friction_amplitudes(case, cut)

@@ -45,7 +45,7 @@ class Predictions:
         Raises InputError or RunError if the case cannot predict the run.
         """
         whole = run.whole or run
-        own = whole.of(case)
+        own = self.kind.reduced(whole.of(case), whole)
         # a run with other weights is predicted alike
         key = (own.content, id(whole.signals))
         with self._lock:

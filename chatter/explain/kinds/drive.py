@@ -1,6 +1,8 @@
 """Moves of an axis of a machine: torque and position predicted by the machine in time."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.frf import machine_paths
-from chatter.explain.kinds.kind import Array, Cuts, Kind, Signals
+from chatter.explain.kinds.kind import Array, Cuts, Kind, Signals, of_sections
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.by_channel import by_channel
 from chatter.explain.residuals.over_variable import over_variable
@@ -79,6 +81,16 @@ class Drive(Kind):
         if "force" in found and move.effort_unit(0) != "N":
             found["force"] = found["force"] / _transmission(case, name)
         return found
+
+    def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
+        """A machine whose structure does not follow its axes."""
+        del run
+        return {} if case.structure.travel_positions == 1 else {"structure.travel_positions": 1}
+
+    def reduced(self, case: Case, run: Run) -> Case:
+        """Return the machine alone: nothing is cut."""
+        del run
+        return of_sections(case, self.sections)
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """What of the machine is declared as uncertain."""

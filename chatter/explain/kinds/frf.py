@@ -2,17 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from chatter.compile.machine_response import machine_response
+from chatter.compile.machine_response import STATES, machine_response
 from chatter.compile.structure import structure_of
 from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
+from chatter.description.sections.tool import Tool
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
 from chatter.explain.fitting import Parameter, with_priors
-from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals
+from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals, of_sections
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.over_lines import by_condition, over_lines
@@ -83,6 +85,17 @@ class FrequencyResponse(Kind):
         values = free[:, response, force]
         return {"real": values.real, "imag": values.imag}
 
+    def reduced(self, case: Case, run: Run) -> Case:
+        """Return the structure; of a machine that moves its feed, and in the cut the contact."""
+        state = STATES.get(run.condition) if case.on_machine else None
+        if state is None:
+            return case
+        sections = {*self.sections}
+        if state.in_cut:
+            sections.add("contact")
+        alone = of_sections(case, sections)
+        return alone.model_copy(update=_feed_of(case)) if state.moving else alone
+
     def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Predicted less measured over the scatter of every line."""
         scatter = run.record.scatter
@@ -100,9 +113,11 @@ class FrequencyResponse(Kind):
         scatter = run.record.scatter
         return Deviation(scatter, float(np.sqrt(np.mean(scatter**2))))
 
-    def searches_start(self, measurement: Measurement) -> bool:
-        """Of a machine, whose resonances move farther than they are wide."""
-        return measurement.case.on_machine
+    def searched_at_start(self, measurement: Measurement) -> list[Parameter]:
+        """Values of a machine, whose resonances move farther than they are wide."""
+        if not measurement.case.on_machine:
+            return []
+        return self.nuisance_parameters(measurement)
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Modal parameters, or what of the machine is declared as uncertain."""
@@ -113,6 +128,14 @@ class FrequencyResponse(Kind):
 def machine_paths(case: Case) -> list[str]:
     """Paths of what of the machine of a case is declared with a standard deviation."""
     return [path for path in case.deviations() if path.startswith(MACHINE_PATH)]
+
+
+def _feed_of(case: Case) -> dict[str, Any]:
+    """Sections that tell the feed of a case: of the tool its number of teeth alone."""
+    if case.tool is None or case.cut is None:
+        return {"tool": case.tool, "cut": case.cut}
+    plain = {name: one.default for name, one in Tool.model_fields.items() if not one.is_required()}
+    return {"tool": case.tool.model_copy(update=plain), "cut": case.cut}
 
 
 def read_and_excited(run: Run) -> tuple[str, str]:

@@ -4,7 +4,7 @@ A kind is one module with a subclass of `Kind`, and one line in `chatter.explain
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -118,6 +118,14 @@ class Kind(ABC):
     def predict(self, case: Case, run: Run) -> Signals:
         """Signals of a whole run by a case with the overrides of the run, at its samples, SI."""
 
+    def reduced(self, case: Case, run: Run) -> Case:
+        """Return a case without what predictions of a run do not depend on; itself by default.
+
+        Cases that differ in nothing else share a prediction.
+        """
+        del run
+        return case
+
     def stands_alone(self, run: Run) -> bool:
         """Whether a prediction of a run is the same to the last bit whatever was predicted before.
 
@@ -152,10 +160,10 @@ class Kind(ABC):
         """
         return measurement
 
-    def searches_start(self, measurement: Measurement) -> bool:
-        """Whether declared values are looked at around before they are refitted; not by default."""
+    def searched_at_start(self, measurement: Measurement) -> list[Parameter]:
+        """Declared values that are looked at around before they are refitted; none by default."""
         del measurement
-        return False
+        return []
 
     def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
         """Overrides of a run by which it costs less to predict, near enough for differences.
@@ -279,6 +287,16 @@ class Kind(ABC):
                 )
         if problems:
             raise InputError(problems)
+
+
+def of_sections(case: Case, names: Collection[str]) -> Case:
+    """Return a case with some of its sections alone, the others as where a file has none."""
+    others = {
+        name: field.get_default(call_default_factory=True)
+        for name, field in Case.model_fields.items()
+        if name not in names
+    }
+    return case.model_copy(update=others)
 
 
 def mean_over_channels(squares: Mapping[str, Sequence[Any]]) -> float:

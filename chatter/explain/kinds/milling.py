@@ -41,6 +41,8 @@ _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
 #: steps over those of predictions that are near enough for differences: two percent of a difference
 _COARSER = 4
+#: time for which axes move before a cut where differences are asked for, s
+_SETTLED = 0.35
 #: steps of the clock that no record of a cut has, s
 _LONGEST_STEP = 0.02
 #: conditions of a cut that a discriminating test may change: unit, reported over SI
@@ -119,10 +121,10 @@ class Milling(Kind):
         return measurement.in_parts()
 
     def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
-        """A quarter of the steps."""
-        given = case.simulation is not None and case.simulation.steps
-        machine = case.structure is not None and case.structure.machine is not None
-        if given or machine:
+        """A quarter of the steps; a machine that stays where it is, and settles for less long."""
+        if case.on_machine:
+            return _coarse_machine(case)
+        if case.simulation is not None and case.simulation.steps:
             return {}
         steps = set_up(run.of(case)).resolution.steps_per_revolution
         return {"simulation.steps": steps // _COARSER}
@@ -191,6 +193,15 @@ class Milling(Kind):
                 words = f"a cut like {run.name} with a {name} of {digits} {unit}"
                 trials.append(Trial(words, trial, levels))
         return trials
+
+
+def _coarse_machine(case: Case) -> Mapping[str, Any]:
+    """Overrides of a machine: its structure does not follow its axes, which come to speed soon."""
+    found: dict[str, Any] = {"structure.travel_positions": 1}
+    settling = case.structure.settling
+    if settling is None or settling > _SETTLED:
+        found["structure.settling"] = _SETTLED
+    return found
 
 
 def _within_reach(one: Parameter) -> Parameter:

@@ -77,6 +77,10 @@ class SetUp(Kind):
         """Signals of a run as its kind predicts them."""
         return self._of(run).predict(case, run)
 
+    def reduced(self, case: Case, run: Run) -> Case:
+        """Return the case as the kind of the run needs it."""
+        return self._of(run).reduced(case, run)
+
     def stands_alone(self, run: Run) -> bool:
         """As the kind of the run does."""
         return self._of(run).stands_alone(run)
@@ -93,12 +97,13 @@ class SetUp(Kind):
                 found.setdefault(one.name, one)
         return list(found.values())
 
-    def searches_start(self, measurement: Measurement) -> bool:
-        """Whether any of the kinds looks around the declared values first."""
-        return any(
-            self.kinds[name].searches_start(measurement.of_kinds((name,)))
-            for name in measurement.kinds
-        )
+    def searched_at_start(self, measurement: Measurement) -> list[Parameter]:
+        """Declared values that any of the kinds looks at around first, each once."""
+        found: dict[str, Parameter] = {}
+        for name in measurement.kinds:
+            for one in self.kinds[name].searched_at_start(measurement.of_kinds((name,))):
+                found.setdefault(one.name, one)
+        return list(found.values())
 
     def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
         """Overrides by which a run costs its kind less to predict."""

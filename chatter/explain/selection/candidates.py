@@ -71,6 +71,7 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
     screened, runs = problem.screened(now, split.fitted)
     steps: list[tuple[Effect, LinearisedStep]] = []
+    progress("looking at what may be missing", number / (MOST_EFFECTS + 1))
     screened_effects = screened_candidates(screened, now, runs, effects)
     for index, (effect, begins) in enumerate(screened_effects):
         share = _LINEARISED_SHARE * index / len(screened_effects)

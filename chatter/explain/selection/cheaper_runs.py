@@ -13,14 +13,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import NEAR_NOISE, PROMISING
+from chatter.explain.criteria import CERTAIN_EVIDENCE, FITTED_IN_FULL, NEAR_NOISE, PROMISING
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
-from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
+from chatter.explain.selection.linearised_step import (
+    LinearisedStep,
+    linearised,
+    linearised_from,
+    promise_from,
+)
 from chatter.explain.selection.problem import Problem
 
-#: candidates that are looked at in all runs where the cheaper ones ask for something
+#: candidates that are fitted to the cheaper runs where these ask for something
 _MOST_SCREENED = 8
 #: size of an amount up to which it is nothing, and to which it is to be known for that
 _NOTHING = 0.2
@@ -55,8 +60,27 @@ def screened_candidates(
     return others + [
         ScreenedCandidate(effect, [step.values])
         for effect, step in steps
-        if not _is_excluded(problem, effect, step)
+        if not _is_excluded(problem, effect, step) and _promises(problem, effect, now, runs)
     ]
+
+
+def _promises(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> bool:
+    """Whether all runs, linearised where an effect is not there, promise something by it.
+
+    The cheaper runs are at their noise: what is left of an effect is small. Steps from where it
+    helps cost several simulations of every run, this one for each of its numbers.
+    """
+    nothing = effect.nothing(problem.measured_by(effect))
+    if not nothing:
+        return True
+    promised = promise_from(problem, effect, now, runs, _beginning(problem, effect, nothing))
+    return promised >= _least_promise(problem, now)
+
+
+def _least_promise(problem: Problem, now: Fit) -> float:
+    """Fall of the sum of squares that must be promised for a closer look."""
+    fixed, share = problem.kind.least_gain
+    return PROMISING * (fixed + share * now.residuals.size)
 
 
 def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run]) -> Fit:
@@ -73,15 +97,40 @@ def _asked_for(
 ) -> list[ScreenedCandidate]:
     """Candidates that may take a significant part of the residual away, the best first."""
     steps = [(one, linearised(problem, one, part, cheap)) for one in effects]
-    fixed, share = problem.kind.least_gain
-    least = PROMISING * (fixed + share * part.residuals.size)
+    least = _least_promise(problem, part)
     gaining = [
         (effect, step)
         for effect, step in steps
         if max(step.promised, part.cost - step.cost) >= least
     ]
     gaining.sort(key=lambda entry: entry[1].cost)
-    return [ScreenedCandidate(effect, [step.values]) for effect, step in gaining[:_MOST_SCREENED]]
+    fits = [_fitted_to(problem, cheap, *entry) for entry in gaining[:_MOST_SCREENED]]
+    order = sorted(range(len(fits)), key=lambda index: fits[index].cost)
+    return [
+        ScreenedCandidate(gaining[index][0], [fits[index].by_name])
+        for index in order[:FITTED_IN_FULL]
+        if _may_be_it(fits[index], fits[order[0]])
+    ]
+
+
+def _fitted_to(problem: Problem, cheap: Sequence[Run], effect: Effect, step: LinearisedStep) -> Fit:
+    """Fit of a candidate to the cheaper runs, that of a step where it ends no lower."""
+    found = problem.with_effect(effect).fit(cheap, step.values, step.jacobian)
+    if found.cost <= step.cost:
+        return found
+    values = np.array([step.values[one.name] for one in found.parameters])
+    residuals = problem.with_effect(effect).residuals(step.values, cheap)
+    return replace(found, values=values, residuals=residuals)
+
+
+def _may_be_it(one: Fit, best: Fit) -> bool:
+    """Whether the cheaper runs leave a candidate beside the best of them.
+
+    Where one effect takes them to their noise, another that does not is not the one missing.
+    """
+    if best.cost > NEAR_NOISE**2 * best.residuals.size:
+        return True
+    return 0.5 * (one.cost - best.cost) < CERTAIN_EVIDENCE
 
 
 def _step_from_nothing(
@@ -89,9 +138,13 @@ def _step_from_nothing(
 ) -> LinearisedStep:
     """Linearised step of an effect that begins where it is not there."""
     nothing = effect.nothing(problem.measured_by(effect))
+    return linearised_from(problem, effect, part, cheap, [_beginning(problem, effect, nothing)])
+
+
+def _beginning(problem: Problem, effect: Effect, nothing: Mapping[str, float]) -> dict[str, float]:
+    """Values of all parameters, by name, where an effect is not there."""
     begin = {one.name: one.start for one in problem.with_effect(effect).parameters()}
-    begin |= {f"{effect.name}.{key}": value for key, value in nothing.items()}
-    return linearised_from(problem, effect, part, cheap, [begin])
+    return begin | {f"{effect.name}.{key}": value for key, value in nothing.items()}
 
 
 def _is_excluded(problem: Problem, effect: Effect, step: LinearisedStep) -> bool:

@@ -148,6 +148,46 @@ def _promised(
     return float(gradient @ np.linalg.solve(jacobian.T @ jacobian + np.diag(weight), gradient))
 
 
+def promise_from(
+    problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run], begin: Mapping[str, float]
+) -> float:
+    """Fall of the sum of squares, over no effect, that its linearised model promises there.
+
+    From values of all parameters, by name; the nuisance parameters move along.
+    """
+    trial = problem.with_effect(effect)
+    added = trial.parameters()[len(now.parameters) :]
+    values = {**begin, **now.by_name}
+    residual = trial.residuals(values, runs)
+    jacobian = np.column_stack([now.jacobian, _columns(trial, added, values, residual, runs)])
+    promised = _promised(jacobian, _weights(now, added), residual)
+    return promised + now.cost - float(residual @ residual)
+
+
+def _columns(
+    trial: Problem,
+    added: Sequence[Parameter],
+    values: Mapping[str, float],
+    residual: NDArray[np.float64],
+    runs: Sequence[Run],
+) -> NDArray[np.float64]:
+    """Differences (n, k) of the residuals by the parameters of an effect, per size."""
+    columns = []
+    for one in added:
+        step = _DIFFERENCE * one.size
+        if values[one.name] + step > one.upper:
+            step = -step
+        moved = trial.residuals({**values, one.name: values[one.name] + step}, runs)
+        columns.append((moved - residual) / (step / one.size))
+    return np.column_stack(columns) if columns else np.empty((residual.size, 0))
+
+
+def _weights(now: Fit, added: Sequence[Parameter]) -> NDArray[np.float64]:
+    """Weights of a linearised step on the parameters of a fit and on those added."""
+    own = [1.0 if one.prior else WEAK_PRIOR for one in added]
+    return np.array([1.0] * len(now.parameters) + own)
+
+
 def _one_step(
     trial: Problem,
     added: Sequence[Parameter],
@@ -156,18 +196,9 @@ def _one_step(
     runs: Sequence[Run],
 ) -> LinearisedStep:
     residual = trial.residuals(values, runs)
-    columns = []
-    for one in added:
-        step = _DIFFERENCE * one.size
-        if values[one.name] + step > one.upper:
-            step = -step
-        moved = trial.residuals({**values, one.name: values[one.name] + step}, runs)
-        columns.append((moved - residual) / (step / one.size))
-    own = np.column_stack(columns) if columns else np.empty((residual.size, 0))
+    own = _columns(trial, added, values, residual, runs)
     jacobian = np.column_stack([now.jacobian, own])
-    weight = np.array(
-        [1.0] * len(now.parameters) + [1.0 if one.prior else WEAK_PRIOR for one in added]
-    )
+    weight = _weights(now, added)
     normal = jacobian.T @ jacobian + np.diag(weight)
     step = -np.linalg.solve(normal, jacobian.T @ residual)
     offset = residual - now.residuals

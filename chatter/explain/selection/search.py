@@ -99,7 +99,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     problem = Problem(measurement, predictions, noise)
     progress("refitting the nuisance parameters", 0.0)
-    begin = _nearest_start(problem, split) if kind.searches_start(measurement) else {}
+    begin = _nearest_start(problem, split)
     now = problem.fit(split.fitted, begin)
     problem = problem.with_noise_beside(now.by_name)
     now = problem.fit(split.fitted, now.by_name)
@@ -131,8 +131,8 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
 
 def _nearest_start(problem: Problem, split: Split) -> dict[str, float]:
     """Values within two tolerances of the declared ones that fit best, looked at one by one."""
-    found = {one.name: one.start for one in problem.parameters()}
-    for one in problem.parameters():
+    found: dict[str, float] = {}
+    for one in problem.kind.searched_at_start(problem.measurement):
         steps = np.clip([one.value(step) for step in _STEPS], one.lower, one.upper)
         costs = [problem.cost({**found, one.name: float(v)}, split.fitted) for v in steps]
         found[one.name] = float(steps[int(np.argmin(costs))])

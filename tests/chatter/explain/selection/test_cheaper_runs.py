@@ -1,5 +1,7 @@
 """Candidates of a set-up on a machine, screened by its FRFs before cuts are simulated."""
 
+from dataclasses import replace
+
 import pytest
 
 from chatter.explain.effects.effect_list import candidates
@@ -9,7 +11,15 @@ from chatter.explain.prediction import Predictions
 from chatter.explain.selection.cheaper_runs import screened_candidates
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import split_runs
-from tests.chatter.explain.test_machine_moves import FRICTION, MACHINE, case_in, cuts, set_up, taps
+from tests.chatter.explain.test_machine_moves import (
+    FRICTION,
+    MACHINE,
+    case_in,
+    cuts,
+    moves,
+    set_up,
+    taps,
+)
 
 NUT = "Y_nut_stiffness"
 
@@ -51,5 +61,34 @@ def test_what_frfs_ask_for_comes_first(tmp_path):
     assert first == f"joint_stiffness.{NUT}"
     (begin,) = named[first].begins
     assert begin[first] == pytest.approx(0.7, rel=0.03)
+    # it takes the FRFs to their noise, and nothing else does
+    assert list(named) == [first]
     # what shows in cuts alone waits until the FRFs are explained
     assert not any(key.startswith(("runout.", "pitch.")) for key in named)
+
+
+def test_runs_are_predicted_once_for_what_they_do_not_depend_on(tmp_path):
+    """Neither the material nor the contact is felt by an axis that moves in the air."""
+    case = case_in(tmp_path, MACHINE + FRICTION)
+    set_up(tmp_path, moves(tmp_path, case), taps(tmp_path, case))
+    kind = KINDS["set-up"]
+    runs = {run.name: run for run in kind.prepared(read_measurement(tmp_path)).runs}
+    move, rest, moving = (
+        runs[f"{name}.csv"] for name in ("move0", "tap_at_rest_0", "tap_moving_0")
+    )
+    predictions = Predictions(kind)
+    nut = "machine.axis.Y.drive.nut_stiffness"
+
+    def shared(run, values):
+        return predictions.of(case, run) is predictions.of(case.patch(values), run)
+
+    cuts_otherwise = {"material.Ktc": "800 MPa", "tool.runout": {"offset": 1e-5}}
+    for run in (move, rest, moving):
+        assert shared(run, cuts_otherwise)
+        assert shared(run, {"contact.stiffness": 1e6, "contact.damping": 1e3})
+        assert not shared(run, {nut: 0.9 * case.get(nut)})
+    # frictions that move with the feed slide
+    assert shared(rest, {"cut.feed_per_tooth": "0.2 mm"})
+    assert not shared(moving, {"cut.feed_per_tooth": "0.2 mm"})
+    in_cut = replace(moving, condition="in_cut")
+    assert not shared(in_cut, {"contact.stiffness": 1e6, "contact.damping": 1e3})
