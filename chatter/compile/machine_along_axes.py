@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from chatter.compile.machine_parts import machine_parts
 from chatter.description.machine.errors_by_key import machine_errors
 from chatter.description.machine.machine_file import MachineFile
-from dynamics.machine.along_axes import machines_at
+from dynamics.machine.along_axes import machines_at, machines_unreduced
 from dynamics.machine.description import Condition, Machine
 from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.linear_structure import LinearStructure
 
 #: travel of an axis below which the structure stays as it is, m
 _LEAST_TRAVEL = 1e-3
@@ -24,9 +25,11 @@ _POSITIONS = {1: (5, 25), 2: (4, 8)}
 _POSITIONS_OF_MORE = (3, 3)
 #: of natural frequencies blended between two exact steps, what is aimed at, and exact steps along
 #: all axes together at the most
-_TOLERANCE, _MOST_STEPS = 2e-4, 160
+_TOLERANCE, _MOST_STEPS = 5e-4, 160
 #: modes whose frequencies are compared: up to the highest, or to 1 kHz, Hz
 _HIGHEST = 1000.0
+#: frequency below which a motion is one that nothing resists, Hz
+_STILL = 1e-2
 #: of a structure, over its largest entry: change that is rounding
 _SAME = 1e-9
 #: part of the distance between two positions by which one is moved to where the axis starts
@@ -85,6 +88,16 @@ def machine_along_axes(
             machines = machines_at(parts, conditions)
         return machines if friction else tuple(one.without_friction() for one in machines)
 
+    def changes(axis: str) -> bool:
+        """Whether an axis alone changes the machine, as its parts tell without any mode."""
+        everywhere = [start | {axis: start[axis] + x} for x in _probes(*travelled[axis])]
+        parts = [
+            replace(machine_parts(file, one), damping_ratio=0.0, mode_damping=())
+            for one in everywhere
+        ]
+        with machine_errors(file.name):
+            return _changes(machines_unreduced(parts, conditions))
+
     highest = file.highest_frequency or _HIGHEST
     changing = [
         axis
@@ -92,8 +105,9 @@ def machine_along_axes(
         if high - low >= _LEAST_TRAVEL and not file.axis[axis].drive.is_rotary
     ]
     # of one axis alone the positions tell as well whether it changes anything
-    probed = {axis: at(_probes(axis, *travelled[axis])) for axis in changing if len(changing) > 1}
-    changing = [axis for axis in changing if axis not in probed or _changes(probed[axis])]
+    probed = len(changing) > 1
+    if probed:
+        changing = [axis for axis in changing if changes(axis)]
     if not changing:
         return None
     grid = tuple(
@@ -107,20 +121,6 @@ def machine_along_axes(
     machines = tuple(assembled[number] for number in range(len(offsets)))
     if not probed and not _changes(machines):
         return None
-    if not probed and len(grid[0]) > 2:
-        middle = len(grid[0]) // 2
-        share = (grid[0][middle] - grid[0][0]) / (grid[0][-1] - grid[0][0])
-        cells = [_cells((machines[0], machines[middle], machines[-1]), highest, share)]
-    else:
-        cells = [
-            _cells(probed.get(axis) or at(_probes(axis, *travelled[axis])), highest)
-            for axis in changing
-        ]
-    most = math.floor(_MOST_STEPS ** (1.0 / len(changing)))
-    parts = tuple(
-        math.ceil(min(number, most) / (len(one) - 1))
-        for number, one in zip(cells, grid, strict=True)
-    )
     return MachinesAlong(
         tuple(changing),
         grid,
@@ -129,7 +129,7 @@ def machine_along_axes(
             outputs(machine, start | {axis: start[axis] + x for axis, x in offset.items()})
             for machine, offset in zip(machines, offsets, strict=True)
         ),
-        parts,
+        _parts_by_axis(machines, grid, first, highest),
     )
 
 
@@ -161,27 +161,62 @@ def _entries(machine: Machine) -> list[NDArray[np.float64]]:
     ]
 
 
-def _probes(axis: str, low: float, high: float) -> list[dict[str, float]]:
-    """Both ends of a travel and its middle."""
-    return [{axis: low}, {axis: 0.5 * (low + high)}, {axis: high}]
+def _probes(low: float, high: float) -> tuple[float, float, float]:
+    """Both ends of a travel and its middle, m."""
+    return low, 0.5 * (low + high), high
 
 
-def _cells(machines: Sequence[Machine], highest: float, share: float = 0.5) -> int:
-    """Cells of a travel between whose ends natural frequencies may be blended.
+def _parts_by_axis(
+    machines: Sequence[Machine], grid: Sequence[NDArray[np.float64]], first: int, highest: float
+) -> tuple[int, ...]:
+    """Parts of the distances between positions at whose ends there are exact steps, by axis.
 
-    From the machine at both ends and at a share of the way between; the error of a blend goes with
-    the square of the distance, and is largest in the middle.
+    Taken along each axis from the start; the machines are those of the grid, the first number is
+    that at the start.
     """
-    first, middle, last = (one.structure for one in machines)
-    blend = (1.0 - share) * first.stiffness + share * last.stiffness
-    halfway = replace(first, stiffness=blend)
-    true, blended = (undamped_modes(one).frequency for one in (middle, halfway))
-    count = int(np.searchsorted(true, highest))
-    true, blended = true[:count], blended[:count]
-    elastic = true > 0.0
-    error = np.max(np.abs(blended[elastic] / true[elastic] - 1.0), initial=0.0)
-    error /= 4.0 * share * (1.0 - share)
-    return max(1, math.ceil(math.sqrt(error / _TOLERANCE)))
+    counts = [len(one) for one in grid]
+    most = math.floor(_MOST_STEPS ** (1.0 / len(counts)))
+    at_start = np.unravel_index(first, counts)
+    numbers = np.arange(len(machines)).reshape(counts)
+    found = []
+    for axis, positions in enumerate(grid):
+        line = tuple(slice(None) if one == axis else place for one, place in enumerate(at_start))
+        along = [machines[number].structure for number in numbers[line]]
+        parts = _parts(along, positions, highest)
+        found.append(max(1, min(parts, math.ceil(most / (counts[axis] - 1)))))
+    return tuple(found)
+
+
+def _parts(
+    structures: Sequence[LinearStructure], positions: NDArray[np.float64], highest: float
+) -> int:
+    """Parts of a distance between whose ends natural frequencies may be blended.
+
+    Each position tells by how much the blend of its neighbours is in error there; the error goes
+    with the square of the distance, and is largest in the middle.
+    """
+    error = 0.0
+    neighbours = zip(
+        zip(structures, structures[1:], structures[2:], strict=False),
+        zip(positions, positions[1:], positions[2:], strict=False),
+        strict=True,
+    )
+    for (before, here, behind), (start, middle, end) in neighbours:
+        share = (middle - start) / (end - start)
+        blend = (1.0 - share) * before.stiffness + share * behind.stiffness
+        true, blended = (_frequencies(one) for one in (here, replace(here, stiffness=blend)))
+        seen = (true > _STILL) & (true < highest)
+        apart = np.max(np.abs(blended[seen] / true[seen] - 1.0), initial=0.0)
+        error = max(error, apart / (4.0 * share * (1.0 - share)))
+    return math.ceil(0.5 * math.sqrt(error / _TOLERANCE))
+
+
+def _frequencies(structure: LinearStructure) -> NDArray[np.float64]:
+    """Natural frequencies, Hz, ascending."""
+    if not np.array_equal(structure.mass, np.eye(structure.size)):
+        return undamped_modes(structure).frequency
+    squared = np.linalg.eigvalsh(structure.stiffness)
+    return np.sqrt(np.maximum(squared, 0.0)) / (2.0 * np.pi)
 
 
 def _count(travelled: tuple[float, float], axes: int) -> int:

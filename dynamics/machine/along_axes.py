@@ -25,6 +25,7 @@ from dynamics.machine.description import (
     meshed_beams,
     reduced,
 )
+from dynamics.machine.transported_coordinates import in_transported_coordinates
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.bodies import MeshedPart
 from dynamics.structure.linear_structure import LinearStructure, StructureError
@@ -59,16 +60,29 @@ def machines_at(
     StructureError
         If the machine makes no sense at one of them, or the mass changes along the travel.
     """
-    full = [full_machine(parts, conditions) for parts in _in_one_mesh(positions, conditions)]
+    full = machines_unreduced(positions, conditions)
     first = full[0]
     for other in full[1:]:
         _require_same_mass(first, other)
     rubbing = {one.name: one for one in positions[0].frictions if one.mode is not None}
     full = [first, *(_with_modes_followed(one, first, rubbing) for one in full[1:])]
+    few = in_transported_coordinates(full, positions[0])
+    if few is not None:
+        return few
     basis = _common_basis(full, positions[0])
     if basis is None:
         return tuple(full)
     return tuple(in_coordinates(one, _projected(one.structure, basis), basis) for one in full)
+
+
+def machines_unreduced(
+    positions: Sequence[MachineParts], conditions: Mapping[str, Condition] | None = None
+) -> list[Machine]:
+    """Assemble a machine at positions of its axes, in the freedoms of all of its parts.
+
+    Arguments and errors as for `machines_at`.
+    """
+    return [full_machine(parts, conditions) for parts in _in_one_mesh(positions, conditions)]
 
 
 def _in_one_mesh(

@@ -258,6 +258,11 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
     The frequency is in Hz. The static answer to forces is kept at drives, frictions and the points
     named; all points by default.
     """
+    return reduced_to(full, _modes_up_to(full, highest), kept_points)
+
+
+def reduced_to(full: Machine, modes: Modes, kept_points: Sequence[str] | None = None) -> Machine:
+    """Machine of its lowest modes, with the static answer of the others as in `reduced`."""
     structure = full.structure
     names = structure.points if kept_points is None else kept_points
     forces = [structure.port(name, direction) for name in names for direction in np.eye(3)]
@@ -267,7 +272,7 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
         *(preload.row for preload in full.preloads),
     ]
     loads = np.array([*points, *forces]).reshape(-1, structure.size)
-    compact, basis = with_static_shapes(structure, _modes_up_to(full, highest), loads)
+    compact, basis = with_static_shapes(structure, modes, loads, full.modes)
     return in_coordinates(full, compact, basis)
 
 

@@ -1,11 +1,13 @@
 """Structure that changes as axes travel, stepped on its ports: tables and kernels.
 
-The structure is known at positions of the axes, in the same coordinates (`machine.along_axes`). Its
-matrices and the rows of its ports are interpolated by splines: a stiffness goes with the square of
-the rows of its springs, so that a linear interpolation would hold a carriage at two places at once
-and be too stiff. Exact steps at many positions in between are blended linearly by where the axes
-are. The state stays what it is, so that nothing jumps; the blend of stable steps is stable. What
-the travel of the axes through a strained structure does to its energy is accounted for.
+The structure is known at positions of the axes, in the same coordinates (`machine.along_axes`).
+Damping and the rows of its ports are interpolated by splines, and so is the logarithm of the
+stiffness (log-Euclidean interpolation; Arsigny, Fillard, Pennec and Ayache 2007, SIAM J. Matrix
+Anal. Appl. 29:328): in between it is positive too, and compliance and frequencies are as smooth as
+the stiffness, while a spline of the stiffness itself would hold a carriage at two places at once.
+Exact steps at many positions in between are blended linearly by where the axes are. The state stays
+what it is, so that nothing jumps; the blend of stable steps is stable. What the travel of the axes
+through a strained structure does to its energy is accounted for.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +19,7 @@ from numpy.typing import NDArray
 
 from dynamics.compiled import INLINED
 from dynamics.machine.description import Machine
-from dynamics.machine.steps import StructureSteps
+from dynamics.machine.steps import StructureSteps, multiply
 from dynamics.matrix_exponential import exact_step
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import StructureError
@@ -63,6 +65,8 @@ class MovingStructure(NamedTuple):
     stiffness_now: NDArray[np.float64]  # (n, n)
     damping_now: NDArray[np.float64]  # (n, n)
     unit: NDArray[np.float64]  # coordinate per displacement of a freedom, 1/s, (n,)
+    strain: NDArray[np.float64]  # displacements of the freedoms, to work in, (n,)
+    strained: NDArray[np.float64]  # stiffness times those, (n,)
     work: NDArray[np.float64]  # of the axes on the structure that they travel through, J, (1,)
 
 
@@ -120,10 +124,13 @@ def moving_structure(
         for what in ("stiffness", "damping")
     )
     shapes = np.array([np.asarray(one) @ modes.shapes for one in rows])
+    free = _free(stiffness, omega == 0.0)
+    held = np.ix_(~free, ~free)
+    stiffness = np.array([_logarithm(one, held) for one in stiffness])
     positions, (stiffness, damping, shapes) = _refined(along, (stiffness, damping, shapes))
+    stiffness = np.array([_exponential(one, held) for one in stiffness])
     along = along._replace(positions=positions)
     start = _start(along)
-    _free(stiffness, omega == 0.0)
     tables = [
         _columns(k, c, seen, unit, step)
         for k, c, seen in zip(stiffness, damping, shapes, strict=True)
@@ -154,6 +161,8 @@ def moving_structure(
         stiffness_now=stiffness[start].copy(),
         damping_now=damping[start].copy(),
         unit=unit,
+        strain=np.zeros(count),
+        strained=np.zeros(count),
         work=np.zeros(1),
     )
     return bus, group
@@ -236,16 +245,39 @@ def _start(along: MachinesAlong) -> int:
     return number
 
 
-def _free(stiffness: NDArray[np.float64], rigid: NDArray[np.bool_]) -> None:
+def _free(stiffness: NDArray[np.float64], rigid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Take the rounding out of what resists motions that nothing resists at any position.
 
-    Axes travel far along them, so that rounding would be a force.
+    Axes travel far along them, so that rounding would be a force. Returns which motions they are.
     """
     largest = np.max(np.abs(stiffness), initial=0.0)
+    free = np.zeros_like(rigid)
     for mode in np.flatnonzero(rigid):
         if np.max(np.abs(stiffness[:, mode])) <= _NO_RESISTANCE * largest:
             stiffness[:, mode, :] = 0.0
             stiffness[:, :, mode] = 0.0
+            free[mode] = True
+    return free
+
+
+def _logarithm(stiffness: NDArray[np.float64], held: tuple) -> NDArray[np.float64]:
+    """Logarithm of the stiffness of the motions that something resists."""
+    values, vectors = np.linalg.eigh(stiffness[held])
+    if values.size and values[0] <= 0.0:
+        raise StructureError(
+            "a motion that something resists at one position of the axes is free at another"
+        )
+    whole = np.zeros_like(stiffness)
+    whole[held] = (vectors * np.log(values)) @ vectors.T
+    return whole
+
+
+def _exponential(logarithm: NDArray[np.float64], held: tuple) -> NDArray[np.float64]:
+    """Stiffness of such a logarithm."""
+    values, vectors = np.linalg.eigh(logarithm[held])
+    whole = np.zeros_like(logarithm)
+    whole[held] = (vectors * np.exp(values)) @ vectors.T
+    return whole
 
 
 def _columns(
@@ -339,24 +371,25 @@ def _blend(into, tables, table, weight, first):
 
 
 @register_jitable(**INLINED)
-def _strain_energy(stiffness, unit, state):
+def _strain_energy(group, state):
     """Strain energy of the state, J."""
+    n = group.unit.shape[0]
+    for i in range(n):
+        group.strain[i] = state[i] / group.unit[i]
+    multiply(group.stiffness_now, group.strain, group.strained, n)
     energy = 0.0
-    for i in range(unit.shape[0]):
-        row = 0.0
-        for j in range(unit.shape[0]):
-            row += stiffness[i, j] * state[j] / unit[j]
-        energy += 0.5 * row * state[i] / unit[i]
+    for i in range(n):
+        energy += 0.5 * group.strained[i] * group.strain[i]
     return energy
 
 
 @register_jitable(**INLINED)
-def _answer(answer, way, motion):
-    """Motion of ports per force on ports."""
+def _answer(answer, way, motion, first, end):
+    """Motion of ports per force on ports; the coordinates that take part in it begin and end."""
     for p in range(answer.shape[0]):
         for q in range(answer.shape[1]):
             answer[p, q] = 0.0
-        for i in range(way.shape[1]):
+        for i in range(first, end):
             moved = way[p, i]
             for q in range(answer.shape[1]):
                 answer[p, q] += moved * motion[i, q]
@@ -377,7 +410,7 @@ def _publish(bus):
 def _follow(group, bus):
     """Blend the steps anew where the axes are now."""
     _locate(group, bus)
-    strained = _strain_energy(group.stiffness_now, group.unit, bus.state)
+    strained = _strain_energy(group, bus.state)
     for number in range(1 << group.port.shape[0]):
         table, weight = _corner(group, number)
         first = number == 0
@@ -390,11 +423,12 @@ def _follow(group, bus):
         _blend(bus.velocity, group.velocity, table, weight, first)
         _blend(group.stiffness_now, group.stiffness, table, weight, first)
         _blend(group.damping_now, group.damping, table, weight, first)
-    _answer(bus.step_compliance, bus.constant, bus.displacement)
-    _answer(bus.step_mobility, bus.constant, bus.velocity)
-    _answer(bus.ramp_compliance, bus.ramp, bus.displacement)
-    _answer(bus.ramp_mobility, bus.ramp, bus.velocity)
-    group.work[0] += _strain_energy(group.stiffness_now, group.unit, bus.state) - strained
+    n = group.unit.shape[0]
+    _answer(bus.step_compliance, bus.constant, bus.displacement, 0, n)
+    _answer(bus.step_mobility, bus.constant, bus.velocity, n, 2 * n)
+    _answer(bus.ramp_compliance, bus.ramp, bus.displacement, 0, n)
+    _answer(bus.ramp_mobility, bus.ramp, bus.velocity, n, 2 * n)
+    group.work[0] += _strain_energy(group, bus.state) - strained
     _publish(bus)
 
 
@@ -424,13 +458,8 @@ def energy_commit(group, bus, clock):  # noqa: ARG001
         u0, u1 = bus.u_before[p], bus.u[p]
         mean = 0.5 * (u0 + u1) + h / 12.0 * (bus.v_before[p] - bus.v[p])
         work += bus.force[p] * (u1 - u0) + bus.change[p] * (u1 - mean)
-    # row by row of the damping, which is symmetric, so that its sums run side by side
-    for i in range(n):
-        group.resisted[i] = 0.0
-    for j in range(n):
-        v = bus.after[n + j]
-        for i in range(n):
-            group.resisted[i] += group.damping[j, i] * v
+    # the damping is symmetric: row by row its sums run side by side
+    multiply(group.damping, bus.after[n:], group.resisted, n)
     power = 0.0
     for i in range(n):
         power += bus.after[n + i] * group.resisted[i]

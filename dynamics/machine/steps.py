@@ -17,6 +17,8 @@ from dynamics.machine.blocks import blocks
 from dynamics.matrix_exponential import exact_step
 from dynamics.structure.linear_structure import LinearStructure
 
+#: size from which a matrix is multiplied by four rows at a time
+_BLOCKED = 16
 #: exact steps kept, of as many structures
 _KEPT_STEPS = 8
 
@@ -136,15 +138,30 @@ def begin_step(bus):
 
 
 @register_jitable(**INLINED)
+def multiply(matrix, values, product, size):
+    """Product of a matrix (size, size), given transposed, with values; row by row.
+
+    Four rows at a time where there are many: sums are loaded and stored a quarter as often.
+    """
+    for i in range(size):
+        product[i] = 0.0
+    whole = size - size % 4 if size >= _BLOCKED else 0
+    for j in range(0, whole, 4):
+        a, b, c, d = values[j], values[j + 1], values[j + 2], values[j + 3]
+        for i in range(size):
+            first = matrix[j, i] * a + matrix[j + 1, i] * b
+            product[i] += first + (matrix[j + 2, i] * c + matrix[j + 3, i] * d)
+    for j in range(whole, size):
+        value = values[j]
+        for i in range(size):
+            product[i] += matrix[j, i] * value
+
+
+@register_jitable(**INLINED)
 def predict_structure(bus):
     """Motion over the step with all forces held."""
     r = bus.dense.shape[0]
-    for i in range(r):
-        bus.after[i] = 0.0
-    for j in range(r):
-        z = bus.state[j]
-        for i in range(r):
-            bus.after[i] += bus.dense[j, i] * z
+    multiply(bus.dense, bus.state, bus.after, r)
     for k in range(bus.pairs.shape[1]):
         x, y = bus.state[r + 2 * k], bus.state[r + 2 * k + 1]
         bus.after[r + 2 * k] = bus.pairs[0, k] * x + bus.pairs[1, k] * y

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -96,9 +97,9 @@ class ImportedPart:
             If the position is not a point and there is no rail, or it lies off its ends.
         """
         at = np.asarray(position, dtype=np.float64)
-        for name, point in self.positions.items():
-            if np.linalg.norm(at - point) <= SAME_POSITION:
-                return self.structure.points[name]
+        off = np.sum((self._all_positions - at) ** 2, axis=1)
+        if off.min() <= SAME_POSITION**2:
+            return self.structure.points[list(self.positions)[int(off.argmin())]]
         if not self.rails:
             points = "; ".join(f'"{name}" at {_shown(one)}' for name, one in self.positions.items())
             raise StructureError(
@@ -108,16 +109,49 @@ class ImportedPart:
 
     def shifted(self, shift: ArrayLike) -> ImportedPart:
         """Same part elsewhere, shifted by (3,) in m."""
+        if not np.any(shift):
+            return self
         moved = {name: position + np.asarray(shift) for name, position in self.positions.items()}
-        return replace(self, positions=moved)
+        # rigid motions are about the first point: what was checked once holds everywhere
+        elsewhere = copy(self)
+        for kept in ("_spans", "_starts_and_alongs", "_all_positions"):
+            elsewhere.__dict__.pop(kept, None)
+        object.__setattr__(elsewhere, "positions", moved)
+        return elsewhere
 
-    def _on_rail(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        spans = [
-            _Span(self.positions, *pair, number == 0, number == len(rail) - 2)
+    @cached_property
+    def _spans(self) -> list[_Span]:
+        """All pairs of neighbouring points of the rails."""
+        return [
+            _Span(
+                *pair,
+                self.positions[pair[0]],
+                self.positions[pair[1]] - self.positions[pair[0]],
+                number == 0,
+                number == len(rail) - 2,
+            )
             for rail in self.rails
             for number, pair in enumerate(itertools.pairwise(rail))
         ]
-        span = min(spans, key=lambda one: one.distance(at))
+
+    @cached_property
+    def _all_positions(self) -> NDArray[np.float64]:
+        """Of the points, (k, 3), m."""
+        return np.array(list(self.positions.values()))
+
+    @cached_property
+    def _starts_and_alongs(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Of all spans, (k, 3) each, m."""
+        return np.array([one.start for one in self._spans]), np.array(
+            [one.along for one in self._spans]
+        )
+
+    def _on_rail(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
+        starts, alongs = self._starts_and_alongs
+        squared = np.sum(alongs**2, axis=1)
+        shares = np.clip(np.sum((at - starts) * alongs, axis=1) / squared, 0.0, 1.0)
+        off = np.sum((at - starts - shares[:, None] * alongs) ** 2, axis=1)
+        span = self._spans[int(np.argmin(off))]
         if span.is_beyond(at):
             ends = "; ".join(
                 f"{_shown(self.positions[rail[0]])} to {_shown(self.positions[rail[-1]])}"
@@ -136,29 +170,18 @@ class ImportedPart:
 class _Span(NamedTuple):
     """Two neighbouring points of a rail."""
 
-    positions: Mapping[str, NDArray[np.float64]]
     first: str
     second: str
+    start: NDArray[np.float64]  # position of the first, m
+    along: NDArray[np.float64]  # from the first to the second, m
     begins: bool  # whether the rail begins with it
     ends: bool
-
-    @property
-    def start(self) -> NDArray[np.float64]:
-        return self.positions[self.first]
-
-    @property
-    def along(self) -> NDArray[np.float64]:
-        return self.positions[self.second] - self.start
 
     def share(self, at: NDArray[np.float64]) -> float:
         return float((at - self.start) @ self.along / (self.along @ self.along))
 
     def share_within(self, at: NDArray[np.float64]) -> float:
         return min(max(self.share(at), 0.0), 1.0)
-
-    def distance(self, at: NDArray[np.float64]) -> float:
-        nearest = self.start + self.share_within(at) * self.along
-        return float(np.linalg.norm(at - nearest))
 
     def is_beyond(self, at: NDArray[np.float64]) -> bool:
         share = self.share(at)
@@ -193,7 +216,7 @@ def bent_beam(
     lengthwise = np.outer(axis, axis)
     across = np.eye(3) - lengthwise
     # rotation to slope of the displacement along the axis, theta x axis
-    turning = np.array([np.cross(one, axis) for one in np.eye(3)]).T
+    turning = -_crossed_with(axis)
     s = share
     values = (2 * s**3 - 3 * s**2 + 1, length * (s**3 - 2 * s**2 + s))
     values += (3 * s**2 - 2 * s**3, length * (s**3 - s**2))
@@ -206,8 +229,14 @@ def bent_beam(
     )
     straight = (1.0 - s) * first + s * second
     displacement = lengthwise @ straight[:3] + deflection
-    rotation = lengthwise @ straight[3:] + np.cross(axis, slope, axisb=0, axisc=0)
+    rotation = lengthwise @ straight[3:] + _crossed_with(axis) @ slope
     return np.vstack([displacement, rotation])
+
+
+def _crossed_with(vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Matrix (3, 3) of the cross product of a vector with another one behind it."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def reduced_part(

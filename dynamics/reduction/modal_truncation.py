@@ -227,7 +227,10 @@ def truncated(
 
 
 def with_static_shapes(
-    structure: LinearStructure, modes: Modes, rows: NDArray[np.float64]
+    structure: LinearStructure,
+    modes: Modes,
+    rows: NDArray[np.float64],
+    all_modes: Modes | None = None,
 ) -> tuple[LinearStructure, NDArray[np.float64]]:
     """Structure in coordinates of modes and of the static shapes that complete them.
 
@@ -236,11 +239,18 @@ def with_static_shapes(
     frequency, and the frequencies of the modes stay as they are.
 
     Modes are from `undamped_modes`, with all rigid-body modes among them; rows (p, n) are the
-    loads, as ports of the structure. The dense structure, without residuals, and its basis (n, m +
-    static), motion per coordinate: rows of ports times it are the new ports.
+    loads, as ports of the structure. Where all modes of the structure are known, as many as it has
+    freedoms, the static answer is their sum. The dense structure, without residuals, and its basis
+    (n, m + static), motion per coordinate: rows of ports times it are the new ports.
     """
-    rigid = modes.shapes[:, modes.frequency == 0.0]
-    static = _elastic_answer(structure, rigid, np.asarray(rows, dtype=np.float64).T)
+    loads = np.asarray(rows, dtype=np.float64).T
+    if all_modes is not None and len(all_modes.frequency) == structure.size:
+        elastic = all_modes.frequency > 0.0
+        shapes = all_modes.shapes[:, elastic]
+        squared = (2.0 * np.pi * all_modes.frequency[elastic]) ** 2
+        static = shapes @ ((shapes.T @ loads) / squared[:, None])
+    else:
+        static = _elastic_answer(structure, modes.shapes[:, modes.frequency == 0.0], loads)
     whole = np.sqrt(np.einsum("np,np->p", static, structure.mass @ static))
     static = static[:, whole > 0.0] / whole[whole > 0.0]
     for _ in range(2):  # once more for the digits that cancelled

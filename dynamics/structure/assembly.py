@@ -8,7 +8,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.structure.bodies import GROUND, Body, Connector, MeshedPart, Part, Point
@@ -30,8 +29,7 @@ class Assembly:
 
         Raises StructureError if there is no such part; the message begins with `who`.
         """
-        size = max(column.stop for column in self.columns.values())
-        motion = np.zeros((6, size))
+        motion = np.zeros((6, self.structure.size))
         if part == GROUND:
             return motion
         if part not in self.parts:
@@ -75,9 +73,9 @@ def assembly(
         raise StructureError("a structure needs at least one body or beam")
     columns = _columns({name: part.mass_matrix.shape[0] for name, part in parts.items()})
     loose = LinearStructure(
-        mass=scipy.linalg.block_diag(*(part.mass_matrix for part in parts.values())),
-        damping=scipy.linalg.block_diag(*(part.damping_matrix for part in parts.values())),
-        stiffness=scipy.linalg.block_diag(*(part.stiffness_matrix for part in parts.values())),
+        mass=_side_by_side([part.mass_matrix for part in parts.values()]),
+        damping=_side_by_side([part.damping_matrix for part in parts.values()]),
+        stiffness=_side_by_side([part.stiffness_matrix for part in parts.values()]),
         points={},
     )
     bare = Assembly(loose, parts, columns)
@@ -149,6 +147,17 @@ def _relative_motion(joint: Connector, bare: Assembly) -> NDArray[np.float64]:
     return bare.motion(who, joint.first, joint.at) - bare.motion(who, joint.second, joint.at)
 
 
+def _side_by_side(matrices: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Block diagonal matrix; scipy's of many small blocks takes longer than all of the rest."""
+    rows, columns = np.sum([one.shape for one in matrices], axis=0)
+    whole = np.zeros((rows, columns))
+    row = column = 0
+    for one in matrices:
+        whole[row : row + one.shape[0], column : column + one.shape[1]] = one
+        row, column = row + one.shape[0], column + one.shape[1]
+    return whole
+
+
 def _over(deformations: Sequence[NDArray], rates: Sequence[NDArray]) -> NDArray[np.float64]:
     if not deformations:
         return 0.0
@@ -163,7 +172,7 @@ def _refuse_free_parts(
     allowed: int,
 ) -> None:
     """Refuse rigid motions of parts that no spring resists."""
-    rigid = scipy.linalg.block_diag(*(part.rigid_motions for part in parts.values()))
+    rigid = _side_by_side([part.rigid_motions for part in parts.values()])
     turning, labels = [], []
     for name, part in parts.items():
         single = part.rigid_motions.shape[1] == 1

@@ -33,7 +33,9 @@ def free_motions(
     rows = rows[norms > 0.0] / norms[norms > 0.0, None]
     if not len(rows):
         return np.eye(len(turning))
-    free = scipy.linalg.null_space(rows, rcond=RANK_TOLERANCE)
+    # the triangle of the rows has their null space, and is no taller than wide
+    triangle = np.linalg.qr(rows, mode="r")
+    free = scipy.linalg.null_space(triangle, rcond=RANK_TOLERANCE)
     if not free.shape[1]:
         return free
     pivots = scipy.linalg.qr(free.T, mode="r", pivoting=True)[1][: free.shape[1]]
