@@ -4,8 +4,8 @@ What carries the state of a machine from one position to the next must mean the 
 therefore have nodes wherever they are joined at any of the positions. A reduction keeps few motions
 at each, which follow one another (`machine.transported_coordinates`); where they are too far apart
 it keeps the motions that are needed at any position: modes up to the highest frequency and static
-shapes of all. What they have in common is found by their energy (proper orthogonal
-decomposition): of the strain energy of a mode or a static shape, and so of the compliance that it gives, next to
+shapes of all. What they have in common is found by their energy (proper orthogonal decomposition):
+of the strain energy of a mode or a static shape, and so of the compliance that it gives, next to
 nothing is lost. The motions kept are orthonormal over the mass, which no travel changes.
 """
 

@@ -55,10 +55,10 @@ def with_plate(machine: MachineFile, plate: float) -> MachineFile:
     """Machine with a plate of the bracket, m, meshed and reduced anew, and a head that fits it."""
     part = parts.bracket(plate)
     element = parts.reduced(part, parts.HIGHEST["bracket"])
-    files = write_super_element(tempfile.mkdtemp(prefix="bracket"), element, part.places)
+    files = write_super_element(tempfile.mkdtemp(prefix="bracket"), element, part.positions)
     keys = ("mass", "stiffness", "nodes")
     changes = {f"imported.bracket.{key}": str(file) for key, file in zip(keys, files, strict=True)}
-    mass = parts.total_mass(element, part.places)
+    mass = parts.total_mass(element, part.positions)
     changes["imported.bracket.total_mass"] = mass
     changes["body.head.mass"] = HEAD - mass - machine.get("body.tool.mass")
     return machine.patch(changes)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +18,10 @@ from numpy.typing import NDArray
 from chatter.io.super_element import write_super_element
 from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.reduction.tied_part import TiedPart, tied_part
 from dynamics.structure.bodies import rigid_motion
-from dynamics.structure.imported import tied_structure
 from dynamics.structure.linear_structure import LinearStructure
 from dynamics.structure.solid_elements import ALUMINIUM, STEEL, boxes, solid_matrices
-from dynamics.structure.surface_constraint import InterpolatedPoint, Nodes, RigidSurface
 
 HERE = Path(__file__).parent
 #: side of an element, m, at the most
@@ -58,14 +56,6 @@ WIDTH, PLATE_LENGTH, FLANGE_DEPTH, FLANGE_HEIGHT = 0.16, 0.20, 0.09, 0.02
 PLATE = 0.0156  # calibrated: bends first at 182 Hz, clamped
 BRACKET_FRONT, BRACKET_TOP = 0.24, 0.05  # back face of the plate, along x; top of the flange
 GRIP = 0.05  # of the plate's lower end, where the tool is held
-
-
-class Part(NamedTuple):
-    """A meshed part and the points that are tied to it."""
-
-    coordinates: NDArray[np.float64]  # (m, 3), m
-    structure: LinearStructure  # free, with points
-    places: dict[str, tuple[float, float, float]]  # of the points, m
 
 
 def gantry_mesh(longest: float = LONGEST["gantry"]):
@@ -111,7 +101,7 @@ def is_steel(x: NDArray, y: NDArray, z: NDArray) -> NDArray[np.bool_]:
     return (z < FOOT_HEIGHT) | on_top(x, y, z)
 
 
-def gantry(longest: float = LONGEST["gantry"]) -> Part:
+def gantry(longest: float = LONGEST["gantry"]) -> TiedPart:
     """Mesh the gantry and tie guide blocks, motors and places of the head."""
     coordinates, mass, stiffness = solid_matrices(
         gantry_mesh(longest), ALUMINIUM, (STEEL, is_steel)
@@ -130,10 +120,10 @@ def gantry(longest: float = LONGEST["gantry"]) -> Part:
     for number, station in enumerate(STATIONS, start=1):
         patch = on_rails & (abs(y - station) < PATCH + 1e-6)
         interpolated.append((f"rail_{number}", (0.0, station, TOP + RAIL_HEIGHT), patch))
-    return tied(coordinates, mass, stiffness, rigid, interpolated)
+    return tied_part(coordinates, mass, stiffness, rigid, interpolated)
 
 
-def bracket(plate: float = PLATE, longest: float = LONGEST["bracket"]) -> Part:
+def bracket(plate: float = PLATE, longest: float = LONGEST["bracket"]) -> TiedPart:
     """Mesh the bracket and tie its flange and the tool."""
     front = BRACKET_FRONT
     back = front + plate - FLANGE_DEPTH
@@ -151,22 +141,7 @@ def bracket(plate: float = PLATE, longest: float = LONGEST["bracket"]) -> Part:
     root = ("root", (front + plate - 0.5 * FLANGE_DEPTH, 0.0, BRACKET_TOP), near(z, BRACKET_TOP))
     gripped = (z < low + GRIP + 1e-6) & (x > front - 1e-6)
     tool = ("grip", (front + 0.5 * plate, 0.0, low + 0.5 * GRIP), gripped)
-    return tied(coordinates, mass, stiffness, [root], [tool])
-
-
-def tied(coordinates, mass, stiffness, rigid, interpolated) -> Part:
-    """Tie points, each (name, place, nodes chosen), to a meshed part."""
-    nodes = Nodes.in_order(np.arange(1, len(coordinates) + 1), coordinates, mass.shape[0])
-    structure = tied_structure(
-        LinearStructure(mass, 0.0 * mass, stiffness, {}),
-        nodes,
-        [RigidSurface(name, at, nodes.names[chosen].tolist()) for name, at, chosen in rigid],
-        [
-            InterpolatedPoint(name, at, nodes.names[chosen].tolist())
-            for name, at, chosen in interpolated
-        ],
-    )
-    return Part(coordinates, structure, {name: at for name, at, _ in (*rigid, *interpolated)})
+    return tied_part(coordinates, mass, stiffness, [root], [tool])
 
 
 def near(values: NDArray[np.float64], value: float) -> NDArray[np.bool_]:
@@ -174,9 +149,9 @@ def near(values: NDArray[np.float64], value: float) -> NDArray[np.bool_]:
     return abs(values - value) < 1e-6
 
 
-def reduced(part: Part, highest: float) -> LinearStructure:
+def reduced(part: TiedPart, highest: float) -> LinearStructure:
     """Craig-Bampton super-element of a part, all its points kept."""
-    return super_element(part.structure, list(part.places), highest)
+    return super_element(part.structure, list(part.positions), highest)
 
 
 def rigid_motions(element: LinearStructure, places: dict) -> NDArray[np.float64]:
@@ -201,14 +176,14 @@ def main() -> list[Path]:
         element = reduced(part, HIGHEST[name])
         print(
             f"{time.perf_counter() - clock:6.1f} s  {name}: {part.structure.size} freedoms, "
-            f"reduced to {element.size}, {total_mass(element, part.places):.6g} kg"
+            f"reduced to {element.size}, {total_mass(element, part.positions):.6g} kg"
         )
         for whole, few in zip(
             *(undamped_modes(one, count=12).frequency[6:] for one in (part.structure, element)),
             strict=True,
         ):
             print(f"          {whole:8.2f} Hz  {few:8.2f} Hz  {few / whole - 1.0:+.1e}")
-        written += write_super_element(HERE / "super-element" / name, element, part.places)
+        written += write_super_element(HERE / "super-element" / name, element, part.positions)
     return written
 
 

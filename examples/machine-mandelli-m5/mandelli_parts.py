@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +17,10 @@ from numpy.typing import NDArray
 from chatter.io.super_element import write_super_element
 from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.reduction.tied_part import TiedPart, tied_part
 from dynamics.structure.bodies import rigid_motion
-from dynamics.structure.imported import tied_structure
 from dynamics.structure.linear_structure import LinearStructure
 from dynamics.structure.solid_elements import Material, boxes, solid_matrices
-from dynamics.structure.surface_constraint import InterpolatedPoint, Nodes, RigidSurface
 
 HERE = Path(__file__).parent
 CAST_IRON = Material(130e9, 0.26, 7200.0)
@@ -51,15 +49,7 @@ SLIDER_AT, SLIDERS, SLIDER = 0.35, (0.65, 1.05), (0.03, 0.05)  # x, y, half side
 CENTRE = 0.85  # height of the spindle
 
 
-class Part(NamedTuple):
-    """A meshed part and the points that are tied to it."""
-
-    coordinates: NDArray[np.float64]  # (m, 3), m
-    structure: LinearStructure  # free, with points
-    places: dict[str, tuple[float, float, float]]  # of the points, m
-
-
-def column(longest: float = LONGEST["column"]) -> Part:
+def column(longest: float = LONGEST["column"]) -> TiedPart:
     """Mesh hollow foot, uprights and bridge, and tie sliders, nut, rails and the bridge's top."""
     half_width, height, half_length = FOOT
     inner, outer, half_depth = UPRIGHT
@@ -115,10 +105,10 @@ def column(longest: float = LONGEST["column"]) -> Part:
     interpolated.append(("top", (0.0, TOP, 0.0), near(y, TOP) & within(x, -inner, inner)))
     front = near(y, height) & within(z, -half_length, -BLOCK_Z[0]) & within(x, -NUT, NUT)
     interpolated.append(("front", (0.0, height, -half_length), front))
-    return tied(coordinates, mass, stiffness, rigid, interpolated)
+    return tied_part(coordinates, mass, stiffness, rigid, interpolated)
 
 
-def saddle(longest: float = LONGEST["saddle"]) -> Part:
+def saddle(longest: float = LONGEST["saddle"]) -> TiedPart:
     """Mesh the hollow saddle, and tie sliders, nut and the seats of the spindle's housing."""
     sides, wall = SADDLE, SADDLE_WALL
     x = [*sides[0], sides[0][0] + wall, sides[0][1] - wall, -SEAT, -NUT_OF_Y, 0.0, NUT_OF_Y, SEAT]
@@ -149,22 +139,7 @@ def saddle(longest: float = LONGEST["saddle"]) -> Part:
     interpolated.append(("seat_front", (0.0, CENTRE, -0.42), front & on_seat))
     top = near(abs(y - CENTRE), sides[1][1] - CENTRE) & within(x, -SEAT, SEAT)
     interpolated.append(("middle", (0.0, CENTRE, -0.30), top & within(z, -0.34, -0.26)))
-    return tied(coordinates, mass, stiffness, rigid, interpolated)
-
-
-def tied(coordinates, mass, stiffness, rigid, interpolated) -> Part:
-    """Tie points, each (name, place, nodes chosen), to a meshed part."""
-    nodes = Nodes.in_order(np.arange(1, len(coordinates) + 1), coordinates, mass.shape[0])
-    structure = tied_structure(
-        LinearStructure(mass, 0.0 * mass, stiffness, {}),
-        nodes,
-        [RigidSurface(name, at, nodes.names[chosen].tolist()) for name, at, chosen in rigid],
-        [
-            InterpolatedPoint(name, at, nodes.names[chosen].tolist())
-            for name, at, chosen in interpolated
-        ],
-    )
-    return Part(coordinates, structure, {name: at for name, at, _ in (*rigid, *interpolated)})
+    return tied_part(coordinates, mass, stiffness, rigid, interpolated)
 
 
 def near(values: NDArray[np.float64], value: float) -> NDArray[np.bool_]:
@@ -190,17 +165,17 @@ def main() -> list[Path]:
     written = []
     for name, part in (("column", column()), ("saddle", saddle())):
         begun = time.perf_counter()
-        element = super_element(part.structure, list(part.places), HIGHEST[name])
+        element = super_element(part.structure, list(part.positions), HIGHEST[name])
         print(
             f"{name}: {part.structure.size} freedoms to {element.size}, "
-            f"{total_mass(element, part.places):.6g} kg, {time.perf_counter() - begun:.0f} s"
+            f"{total_mass(element, part.positions):.6g} kg, {time.perf_counter() - begun:.0f} s"
         )
         for whole, few in zip(
             *(undamped_modes(one, count=12).frequency[6:] for one in (part.structure, element)),
             strict=True,
         ):
             print(f"          {whole:8.2f} Hz  {few:8.2f} Hz  {few / whole - 1.0:+.1e}")
-        written += write_super_element(HERE / "super-element" / name, element, part.places)
+        written += write_super_element(HERE / "super-element" / name, element, part.positions)
     return written
 
 

@@ -7,6 +7,7 @@ import scipy.sparse.linalg
 import chatter
 from chatter.compile.linearised_friction import rigid_motion
 from chatter.compile.machine_parts import assembled_machine, machine_parts
+from dynamics.structure.bodies import rigid_motion as rigid_motion_of_body
 from tests.places import EXAMPLES, example_module
 
 EXAMPLE = EXAMPLES / "machine-mandelli-m5"
@@ -34,6 +35,27 @@ def test_the_mass_of_the_saddle_is_that_of_the_drawing(file):
     volume = 0.76 * 0.56 * 0.26 - 0.69 * 0.49 * 0.19
     lifted = saddle.rigid_motions[:, 1]
     assert lifted @ saddle.mass_matrix @ lifted == pytest.approx(7200.0 * volume, rel=1e-6)
+
+
+def test_the_saddle_moves_as_one_rigid_body_of_its_drawing(file):
+    """Mass, centre of gravity and inertia of a hollow box, by hand."""
+    saddle = shipped(file, "saddle")
+    outer, inner = np.array([0.76, 0.56, 0.26]), np.array([0.69, 0.49, 0.19])
+    solid, hollow = 7200.0 * np.prod(outer), 7200.0 * np.prod(inner)
+    expected = [
+        (solid * (outer**2).sum() - hollow * (inner**2).sum()) / 12.0
+        - (solid * outer[way] ** 2 - hollow * inner[way] ** 2) / 12.0
+        for way in range(3)
+    ]
+    first = next(iter(saddle.positions.values()))
+    motions = saddle.rigid_motions @ np.linalg.inv(
+        rigid_motion_of_body(np.array([0.0, 0.85, -0.30]) - first)
+    )
+    inertia = motions.T @ saddle.mass_matrix @ motions
+    np.testing.assert_allclose(np.diag(inertia)[:3], solid - hollow, rtol=1e-6)
+    np.testing.assert_allclose(np.diag(inertia)[3:], expected, rtol=1e-5)
+    # about the centre of gravity turning takes no push
+    np.testing.assert_allclose(inertia[:3, 3:], 0.0, atol=1e-5 * (solid - hollow))
 
 
 def test_the_shipped_saddle_gives_way_as_its_full_mesh(file):
