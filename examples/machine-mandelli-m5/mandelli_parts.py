@@ -50,7 +50,7 @@ CENTRE = 0.85  # height of the spindle
 
 
 def column(longest: float = LONGEST["column"]) -> TiedPart:
-    """Mesh hollow foot, uprights and bridge, and tie sliders, nut, rails and the bridge's top."""
+    """Mesh hollow foot and uprights, and the bridge, solid between them; tie what is joined."""
     half_width, height, half_length = FOOT
     inner, outer, half_depth = UPRIGHT
     half = [inner, inner + WALL, outer - WALL, outer, half_width - FOOT_WALL, half_width, NUT]

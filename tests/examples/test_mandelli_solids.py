@@ -37,6 +37,24 @@ def test_the_mass_of_the_saddle_is_that_of_the_drawing(file):
     assert lifted @ saddle.mass_matrix @ lifted == pytest.approx(7200.0 * volume, rel=1e-6)
 
 
+def test_the_mass_of_the_column_is_that_of_the_drawing(file):
+    """Volume by hand: boxes less their hollows; the bridge is solid between the uprights."""
+    wall, web = 0.012, 0.006
+    # hollows: across and along of a quarter of the foot, of an upright beside its web
+    foot_hollow = (0.438 - web) * (0.488 - web)
+    upright_hollow = 0.188 - wall - 2.0 * web
+    # an upright goes on through the foot as walls
+    through = 0.188 * (0.15 - web) - upright_hollow * (0.138 - web)
+    foot = 0.9 * 0.24 * 1.0 - 4.0 * 0.216 * (foot_hollow - through)
+    uprights = 2.0 * 1.13 * (0.2 * 0.3 - upright_hollow * 0.276)
+    bridge = 0.9 * 0.16 * 0.3 - 2.0 * 0.136 * upright_hollow * 0.276
+    rails = 2.0 * 0.04 * 0.02 * 1.08
+    column = shipped(file, "column")
+    lifted = column.rigid_motions[:, 1]
+    mass = 7200.0 * (foot + uprights + bridge + rails)
+    assert lifted @ column.mass_matrix @ lifted == pytest.approx(mass, rel=1e-6)
+
+
 def test_the_saddle_moves_as_one_rigid_body_of_its_drawing(file):
     """Mass, centre of gravity and inertia of a hollow box, by hand."""
     saddle = shipped(file, "saddle")
