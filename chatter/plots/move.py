@@ -51,7 +51,7 @@ def plot_move(result: MoveResult) -> Figure:
 def _label(panel: Axes, text: str, legend: bool = True) -> None:
     panel.set(xlabel="time [s]", ylabel=text)
     if legend:
-        panel.legend(fontsize=8.0, frameon=False)
+        _legend_above(panel)
 
 
 def _draw_path(panel: Axes, result: MoveResult) -> None:
@@ -71,7 +71,19 @@ def _draw_path(panel: Axes, result: MoveResult) -> None:
         label=f"error x {factor:g}",
     )
     panel.set(aspect="equal", xlabel=f"{result.axes[0]} [mm]", ylabel=f"{result.axes[1]} [mm]")
-    panel.legend(fontsize=8.0, frameon=False)
+    _legend_above(panel)
+
+
+def _legend_above(panel: Axes) -> None:
+    """Legend above the panel, where no curve is."""
+    panel.legend(
+        fontsize=8.0,
+        frameon=False,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=2,
+        borderaxespad=0.1,
+    )
 
 
 def _across(wanted: np.ndarray, went: np.ndarray) -> np.ndarray:
