@@ -8,6 +8,7 @@
 | `milling_physics` | a cut in time | Runge-Kutta on the modes, history by Hermite polynomials |
 | `milling_effects` | effects of a cut, each with random parameters | |
 | `milling` | draws cuts, runs them, writes sets | |
+| `recorded` | those cuts as a shop records them: from the air or in the cut, turned, drifting | |
 | `axis_physics`, `axis` | feed axis under position control | Runge-Kutta on mass, friction, gap |
 | `stability_physics`, `stability` | points judged stable or chatter | growth of a disturbance |
 | `frf` | tap tests idle and in the cut | sums of modes |

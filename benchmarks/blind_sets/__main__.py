@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-KINDS = ("milling", "axis", "stability", "frf")
+KINDS = ("milling", "axis", "stability", "frf", "recorded")
 #: first number of the sets of a kind, so that kinds can share a folder
-FIRST = {"milling": 1, "axis": 1001, "stability": 2001, "frf": 3001}
+FIRST = {"milling": 1, "axis": 1001, "stability": 2001, "frf": 3001, "recorded": 4001}
 
 
 def write_sets(out: Path, kind: str, count: int, seed: int, effect: str | None = None) -> None:

@@ -237,14 +237,14 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
     for place_in_set, index in enumerate(shown_runs):
         name = f"run{place_in_set + 1:02d}.csv"
         _write_record(place / name, noisy[index])
-        entries.append({"file": name, **_conditions_of(drawn.cuts[index], drawn.mode)})
+        entries.append({"file": name, **conditions_of(drawn.cuts[index], drawn.mode)})
     unseen = []
     apart = truth / "unseen"
     apart.mkdir()
     for place_in_set, index in enumerate(hidden):
         name = f"unseen{place_in_set + 1:02d}.csv"
         _write_record(apart / name, noisy[index])
-        unseen.append({"file": name, **_conditions_of(drawn.cuts[index], drawn.mode)})
+        unseen.append({"file": name, **conditions_of(drawn.cuts[index], drawn.mode)})
     title = f"set-{number:04d}"
     first = dict(entries[0])
     first.pop("file"), first.pop("cut_time")
@@ -306,7 +306,8 @@ def _write_record(path: Path, record: Record) -> None:
     write_signals(path, heading, columns, ["%.7f", "%.5f", "%.3f", "%.3f", "%.4f", "%.4f"])
 
 
-def _conditions_of(cut: Cut, mode: str) -> dict[str, str]:
+def conditions_of(cut: Cut, mode: str) -> dict[str, str]:
+    """Overrides of a run as a measurement file has them."""
     return {
         "spindle_speed": f"{round(cut.speed * 60.0 / TURN)} rpm",
         "feed_per_tooth": f"{cut.feed * 1e3:.6g} mm",

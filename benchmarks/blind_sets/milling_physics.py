@@ -89,6 +89,7 @@ class Cut(NamedTuple):
     entry: float
     exit: float
     cut_time: float
+    touches: float = -np.inf  # when the tool touches the straight front edge of the block, s
 
 
 class Record(NamedTuple):
@@ -161,6 +162,8 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
     teeth = p.tooth_angle.shape[0]
     psi = _turned(t, p, c)
     feed_speed = c.feed * teeth * c.speed / (2.0 * np.pi)
+    # front edge of the block ahead of the axis of the tool, which vibrates
+    front = p.radius - feed_speed * (t - c.touches) - now[0]
     spots = 1.0 + p.spot_amplitude * np.sin(
         2.0 * np.pi * feed_speed * t / p.spot_wavelength + p.spot_phase
     )
@@ -201,13 +204,21 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
                     other = np.cos(p.runout_angle - p.tooth_angle[(j + k) % teeth])
                     past[k, 2] = p.runout_offset * (mine - other)
             width = (high - low) / POINTS_ON_EDGE
-            engaged += (high - low) / c.depth
+            entering = front > -p.radius
+            if not entering:
+                engaged += (high - low) / c.depth
             for i in range(POINTS_ON_EDGE):
                 phi = tip - p.lag * (low + (i + 0.5) * width)
                 sine, cosine = np.sin(phi), np.cos(phi)
                 h = 1e9
                 for k in range(1, teeth + 1):
                     h = min(h, past[k, 0] * sine + past[k, 1] * cosine + past[k, 2])
+                if entering:
+                    # the block is no thicker along the radius than as far as its front edge
+                    behind_front = p.radius - front / max(sine, 1e-9)
+                    if behind_front > 0.0:
+                        engaged += width / c.depth
+                    h = min(h, behind_front)
                 if h <= 0.0:
                     continue
                 law = h if p.exponent == 1.0 else p.h0 * (h / p.h0) ** p.exponent
@@ -264,10 +275,10 @@ def _rates(t, state, step, known, u, v, p, c, past, force, measured, rate):
 
 
 @njit(cache=True, error_model="numpy")
-def _integrate(samples, fine, start, p, c):
+def _integrate(samples, sampling, fine, start, p, c):
     """Forces as measured and displacements at the samples, (samples, 4)."""
     modes = p.mass.shape[0]
-    step = 1.0 / (SAMPLING * fine)
+    step = 1.0 / (sampling * fine)
     steps = (samples - 1) * fine
     u, v = np.zeros((steps + 2, 2)), np.zeros((steps + 2, 2))
     past = np.zeros((p.tooth_angle.shape[0] + 1, 3))
@@ -307,19 +318,21 @@ def arc_of(mode: str, radial_depth: float, radius: float) -> tuple[float, float]
     return (0.0, swept) if mode == "up" else (np.pi - swept, np.pi)
 
 
-def run(plant: Plant, cut: Cut, duration: float, start: Array | None = None) -> Record:
+def run(
+    plant: Plant, cut: Cut, duration: float, start: Array | None = None, sampling: float = SAMPLING
+) -> Record:
     """Signals of a cut that begins from rest (or from ``start``: q, q' of each mode)."""
-    samples = round(duration * SAMPLING) + 1
+    samples = round(duration * sampling) + 1
     turn = TURN / cut.speed
     fastest = max(float(plant.frequency.max()) * 1.2, plant.sensor_frequency)
     rubbing = plant.slide_friction / plant.slide_velocity / float(plant.mass.min())
     need = max(STEPS_A_TURN / turn, STEPS_A_VIBRATION * fastest, 1.5 * rubbing)
-    fine = int(np.ceil(need / SAMPLING))
+    fine = int(np.ceil(need / sampling))
     state = np.zeros(2 * len(plant.mass) + 4)
     if start is not None:
         state[: len(start)] = start
-    out = _integrate(samples, fine, state, plant, cut)
-    time = np.arange(samples) / SAMPLING
+    out = _integrate(samples, sampling, fine, state, plant, cut)
+    time = np.arange(samples) / sampling
     fx = out[:, 0] + plant.crosstalk_xy * out[:, 1]
     fy = out[:, 1] + plant.crosstalk_yx * out[:, 0]
     return Record(time, cut.speed * time, fx, fy, out[:, 2], out[:, 3])

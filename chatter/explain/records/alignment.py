@@ -8,8 +8,9 @@ frequency is folded back by the sampling, and is predicted as such.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,9 @@ Complex = NDArray[np.complex128]
 
 #: sampling frequency over the corner frequency of the anti-alias filter: where the search begins,
 #: as is usual, and largest; zero is no filter
-USUAL_FILTER, _LOWEST_FILTER = 2.5, 6.0
-_FILTER_STEP = 1e-3
+USUAL_FILTER, _LOWEST_FILTER = 2.5, 4.0
+#: twice the damping ratios of the poles of a Butterworth filter of fourth order
+_DAMPED = (2.0 * math.cos(math.pi / 8.0), 2.0 * math.sin(math.pi / 8.0))
 #: angles of the scan, steps of the search, and changes below which it ends
 _SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-8
 #: highest order that is predicted, over the highest in the band: a usual filter leaves a hundredth
@@ -30,6 +32,8 @@ _FOLDED = 3.0
 _POINTS_AN_ORDER = 24
 #: widest steps, as a part of a pitch, and of the filter
 _WIDEST_TURN, _WIDEST_FILTER = 0.1, 0.5
+#: orders of which the waves are made at once
+_BLOCK = 32
 #: of the normal equations, so that what the record does not show stays where it is
 _DAMPING = 1e-12
 
@@ -64,12 +68,25 @@ class Recorded:
 
     @cached_property
     def _folding(self) -> tuple[Complex, Complex]:
-        """Shares (M - K, K) of harmonics above the band, and of their conjugates, within it."""
-        high, low = self.orders[self.in_band :], self.orders[: self.in_band]
-        count = max(float(self.usable.sum()), 1.0)
-        waves = np.exp(-1j * np.outer(self.turned, low)) * (self.usable / count)[:, None]
-        above = np.exp(1j * np.outer(high, self.turned))
-        return above @ waves, np.conj(above) @ waves
+        """Shares (M - K, K) of harmonics above the band, and of their conjugates, within it.
+
+        Mean products of two harmonics over the usable samples are those of their difference.
+        """
+        high, low = self.orders[self.in_band :, None], self.orders[: self.in_band]
+        mean = self._means(self.orders.size + self.in_band + 1)
+        return mean[high - low], np.conj(mean[high + low])
+
+    def _means(self, count: int) -> Complex:
+        """Means (count,) of the harmonics of order 0 on over the usable samples."""
+        weight = self.usable / max(float(self.usable.sum()), 1.0)
+        first = np.exp(1j * np.outer(self.turned, np.arange(_BLOCK)))
+        found = np.empty(count, dtype=np.complex128)
+        for begin in range(0, count, _BLOCK):
+            size = min(_BLOCK, count - begin)
+            found[begin : begin + size] = (weight * np.exp(1j * begin * self.turned)) @ first[
+                :, :size
+            ]
+        return found
 
     def folded(self, harmonics: Complex) -> Complex:
         """Harmonics (c, K) that a record shows of a signal of harmonics (c, M)."""
@@ -95,10 +112,14 @@ class Recorded:
         count = max(float(self.usable.sum()), 1.0)
         return 2.0 / count * (flat @ waves) / self.deviation[:, None]
 
+    @property
+    def frequency(self) -> Array:
+        """Frequency (M,) of the harmonics, Hz."""
+        return self.orders * self.speed / (2.0 * math.pi)
+
     def filtered(self, corner_ratio: float) -> Complex:
         """Anti-alias filter (M,) at the harmonics."""
-        frequency = self.orders * self.speed / (2.0 * math.pi)
-        return low_pass(frequency, corner_ratio, self.sampling)
+        return low_pass(self.frequency, corner_ratio, self.sampling)
 
     def drift(self, values: Array) -> Array:
         """Offset and drift (c, n) of values (c, n), from the usable samples."""
@@ -130,62 +151,77 @@ class Alignment:
 def low_pass(frequency: Array, corner_ratio: float, sampling: float) -> Complex:
     """Fourth-order Butterworth filter at frequencies, Hz, by the sampling over the corner one."""
     s = 1j * frequency * corner_ratio / sampling
-    return 1.0 / ((s * s + 1.8477590650 * s + 1.0) * (s * s + 0.7653668647 * s + 1.0))
+    first, second = _DAMPED
+    return 1.0 / ((s * s + first * s + 1.0) * (s * s + second * s + 1.0))
+
+
+def _slope_of_low_pass(frequency: Array, corner_ratio: float, sampling: float) -> Complex:
+    """Change of the logarithm of the low pass with the sampling over the corner frequency."""
+    rate = 1j * frequency / sampling
+    s = rate * corner_ratio
+    return -rate * sum((2.0 * s + one) / (s * s + one * s + 1.0) for one in _DAMPED)
 
 
 def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
     """Lay harmonics (c, M) of channels over the angle, from the first order on, beside a record."""
-    start, ratio = _found(harmonics, recorded)
-    predicted = recorded.at(harmonics * recorded.filtered(ratio), start)
+    found = _found(harmonics, recorded)
+    filtered = recorded.filtered(found.ratio)
+    predicted = recorded.at(harmonics * filtered, found.start)
     predicted += recorded.drift(recorded.signals - predicted)
-    corner = recorded.sampling / ratio if ratio > 0.0 else math.inf
-    return Alignment(predicted, recorded.turned + start, start, corner)
+    corner = recorded.sampling / found.ratio if found.ratio > 0.0 else math.inf
+    return Alignment(predicted, recorded.turned + found.start, found.start, corner)
 
 
-def _found(harmonics: Complex, recorded: Recorded) -> tuple[float, float]:
-    """Start angle, rad, and sampling over corner frequency, at which harmonics (c, M) fit best."""
+class _Laid(NamedTuple):
+    """Harmonics laid beside a record."""
+
+    cost: float  # sum of squares of what differs
+    start: float  # angle, rad
+    ratio: float  # sampling over corner frequency
+
+
+def _found(harmonics: Complex, recorded: Recorded) -> _Laid:
+    """Start angle and filter at which harmonics (c, M) fit best.
+
+    By Gauss-Newton steps, shorter ones where the fit gets no better. A filter delays, as the angle
+    does: the angle is counted as delayed, so that one hardly moves the other.
+    """
     scaled = harmonics / recorded.deviation[:, None]
-    unknown = np.array([0.0, USUAL_FILTER])
+    start, delay = 0.0, 0.0
     if recorded.angle is None:
-        unknown[0] = _scanned(scaled * recorded.filtered(USUAL_FILTER), recorded)
-    best = _Step(math.inf, unknown, np.zeros(2))
+        start = _scanned(scaled * recorded.filtered(USUAL_FILTER), recorded)
+        delay = sum(_DAMPED) * recorded.speed / (2.0 * math.pi * recorded.sampling)
+    best, step = _step_from(scaled, recorded, _Laid(0.0, start, USUAL_FILTER), delay)
     for _ in range(_MOST_STEPS):
-        now = _step_from(scaled, recorded, unknown)
-        # too far: half the way
-        best = replace(best, step=0.5 * best.step) if now.cost > best.cost else now
-        unknown = best.unknown + best.step
-        unknown[1] = min(max(unknown[1], 0.0), _LOWEST_FILTER)
-        if np.max(np.abs(unknown - best.unknown)) < _CONVERGED:
+        ratio = min(max(best.ratio + step[1], 0.0), _LOWEST_FILTER)
+        turned = step[0] + delay * (ratio - best.ratio)
+        if max(abs(turned), abs(ratio - best.ratio)) < _CONVERGED:
             break
-    return float(best.unknown[0]), float(best.unknown[1])
+        there = _Laid(0.0, best.start + turned, ratio)
+        trial, further = _step_from(scaled, recorded, there, delay)
+        if trial.cost > best.cost:
+            step = 0.5 * step  # too far: half the way
+        else:
+            best, step = trial, further
+    return best
 
 
-@dataclass(frozen=True, eq=False)
-class _Step:
-    """Start angle and filter that were tried, sum of squares there, and the step from there."""
-
-    cost: float
-    unknown: Array
-    step: Array
-
-
-def _step_from(scaled: Complex, recorded: Recorded, unknown: Array) -> _Step:
-    """Gauss-Newton step of scaled harmonics (c, M)."""
-    turn = np.exp(1j * recorded.orders * unknown[0])
-    now, above, below = (
-        scaled * recorded.filtered(unknown[1] + step) * turn
-        for step in (0.0, _FILTER_STEP, -_FILTER_STEP)
-    )
-    slopes = [1j * recorded.orders * now, (above - below) / (2.0 * _FILTER_STEP)]
-    matrix = np.array([recorded.folded(one).ravel() for one in slopes])
+def _step_from(scaled: Complex, recorded: Recorded, at: _Laid, delay: float) -> tuple[_Laid, Array]:
+    """Cost of scaled harmonics (c, M), and the Gauss-Newton step in angle and filter from there."""
+    turn = np.exp(1j * recorded.orders * at.start)
+    now = scaled * recorded.filtered(at.ratio) * turn
+    turned = 1j * recorded.orders
+    by_filter = _slope_of_low_pass(recorded.frequency, at.ratio, recorded.sampling)
+    rows = np.concatenate([now, now * turned, now * (by_filter + delay * turned)])
+    shown, *slopes = np.split(recorded.folded(rows), 3)
+    matrix = np.array([one.ravel() for one in slopes])
     matrix[0] *= recorded.angle is None
-    residual = (recorded.content - recorded.folded(now)).ravel()
+    residual = (recorded.content - shown).ravel()
     normal = np.real(np.conj(matrix) @ matrix.T)
     normal += _DAMPING * (np.trace(normal) + 1e-300) * np.eye(2)
     step = np.linalg.solve(normal, np.real(np.conj(matrix) @ residual))
     limits = np.array([_WIDEST_TURN * recorded.pitch, _WIDEST_FILTER])
-    cost = float(np.sum(np.abs(residual) ** 2))
-    return _Step(cost, unknown, np.clip(step, -limits, limits))
+    return at._replace(cost=float(np.sum(np.abs(residual) ** 2))), np.clip(step, -limits, limits)
 
 
 def _scanned(scaled: Complex, recorded: Recorded) -> float:

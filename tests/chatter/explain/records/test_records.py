@@ -16,7 +16,7 @@ from chatter.explain.checking import checked
 from chatter.explain.comparison import compare
 from chatter.explain.data_checks.finding import NOTE, RUN
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.records.alignment import Recorded, aligned
+from chatter.explain.records.alignment import Recorded, aligned, low_pass
 from chatter.explain.records.case_axes import in_case_axes
 from chatter.explain.records.description import Channel, RecordDescription, record_of
 from chatter.explain.records.spindle import speed_by_repetition, tacho_reading
@@ -354,6 +354,36 @@ def test_notes_tell_the_stages(case, cut_off, tmp_path):
     usable = checked(measurement(case, cut_off, tmp_path, as_in_the_case, record))
     told = [one.description for one in usable.findings if one.severity == NOTE]
     assert any("settled from" in one and "rpm by what repeats" in one for one in told)
+
+
+def test_a_model_that_lacks_something_is_laid_as_well_as_any_angle_and_filter_would():
+    """A filter delays as an angle does: on the way to the best of both, neither stops the other.
+
+    The model lacks a resonance at 1.1 kHz; every angle and corner is tried beside it.
+    """
+    sampling, speed = 1e4, 100.0 * TURN
+    orders = np.arange(1, 301)
+    time = np.arange(2100) / sampling  # 21 revolutions
+    harmonics = np.where(orders % 2 == 0, 1.0 / orders**0.5, 0.1) * np.exp(1j * orders**2)
+    ratio = orders * speed / (TURN * 1100.0)
+    cut = harmonics * (1.0 + 0.3 / (1.0 - ratio**2 + 0.1j * ratio))
+    b, a = scipy.signal.butter(4, TURN * 2900.0, analog=True)
+    filtered = cut * scipy.signal.freqs(b, a, orders * speed)[1]
+    signal = np.real(filtered @ np.exp(1j * np.outer(orders, speed * time + 1.1)))
+    recorded = Recorded(time, signal[None, :], np.full(1, 1e-3), np.ones(time.size), speed, TURN)
+    known = harmonics[None, : recorded.orders.size]
+    found = aligned(known, recorded)
+
+    def left(start, corner):
+        shown = recorded.folded(
+            known * low_pass(recorded.frequency, sampling / corner, sampling)
+            * np.exp(1j * recorded.orders * start)
+        )  # fmt: skip
+        return float(np.sum(np.abs(recorded.content * 1e-3 - shown) ** 2))
+
+    starts = found.start + np.linspace(-0.15, 0.15, 61)
+    best = min(left(one, corner) for one in starts for corner in np.geomspace(2500.0, 8000.0, 30))
+    assert left(found.start, found.corner) <= best
 
 
 def test_what_the_filter_lets_pass_above_the_band_is_predicted():
