@@ -130,7 +130,7 @@ class LinearisedMachine:
     def notes(self) -> tuple[str, ...]:
         """What was assumed."""
         notes = [
-            *self.cut.file.notes,
+            *self.cut.notes,
             f"dynamics of {self.cut.file.name}, linearised, its control loops closed",
         ]
         if self.cut.machine.frictions:

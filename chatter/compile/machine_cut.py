@@ -44,6 +44,7 @@ class MachineCut:
     #: direction of the cut, "x", "y", "z" -> velocity of each axis for 1 m/s along it; those alone
     #: along which the axes under control can move the tool
     travels: Mapping[str, Mapping[str, float]]
+    notes: tuple[str, ...] = ()  # what was assumed of the machine
 
     def velocities(self, feed: float, speed: float) -> dict[str, float]:
         """Velocity of all axes for a feed, m/s, and a spindle speed, rad/s."""
@@ -101,7 +102,21 @@ def cut_on(
     tool, spindle, sense = _rows(case, file, machine, positions, name)
     travels = _travels(machine, tool, [one for one in machine.axes if one != name])
     feeds = travels.get("x", {})
-    return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels)
+    notes = (*file.notes, *_notes_on_contact(case, file))
+    return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels, notes)
+
+
+def _notes_on_contact(case: Case, file: MachineFile) -> tuple[str, ...]:
+    """What becomes of a contact of the machine in a cut: tap tests may know it, the cut does not.
+
+    Which shares of it act in a cut follows from the engagement, which the case describes.
+    """
+    if file.contact is None or case.contact is not None:
+        return ()
+    return (
+        f"the [contact] of {file.name} acts in FRFs in the cut; this cut has none, as the case "
+        "has no [contact]",
+    )
 
 
 def rows_of_cut(

@@ -227,7 +227,7 @@ def _start(cut: MachineCut, speed: float) -> NDArray[np.float64]:
 
 
 def _notes(cut: MachineCut, along: MachinesAlong | None) -> tuple[str, ...]:
-    notes = list(cut.file.notes)
+    notes = list(cut.notes)
     if along is not None:
         travel = "; ".join(
             f"{axis} from {first:g} to {last:g} mm at {len(one)} positions"
