@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 
 #: sampling frequency over the corner frequency of the anti-alias filter: where the search begins,
 #: as is usual, and largest; zero is no filter
-USUAL_FILTER, _LOWEST_FILTER = 2.5, 4.0
+USUAL_FILTER, _LOWEST_FILTER = 2.5, 6.0
 #: twice the damping ratios of the poles of a Butterworth filter of fourth order
 _DAMPED = (2.0 * math.cos(math.pi / 8.0), 2.0 * math.sin(math.pi / 8.0))
 #: angles of the scan, steps of the search, and changes below which it ends
