@@ -126,9 +126,13 @@ def moving_structure(
     shapes = np.array([np.asarray(one) @ modes.shapes for one in rows])
     free = _free(stiffness, omega == 0.0)
     held = np.ix_(~free, ~free)
-    stiffness = np.array([_logarithm(one, held) for one in stiffness])
+    # a machine that floats turns as a whole from position to position, and has no logarithm
+    resists = all(np.all(np.linalg.eigvalsh(one[held]) > 0.0) for one in stiffness)
+    if resists:
+        stiffness = np.array([_logarithm(one, held) for one in stiffness])
     positions, (stiffness, damping, shapes) = _refined(along, (stiffness, damping, shapes))
-    stiffness = np.array([_exponential(one, held) for one in stiffness])
+    if resists:
+        stiffness = np.array([_exponential(one, held) for one in stiffness])
     along = along._replace(positions=positions)
     start = _start(along)
     tables = [
@@ -263,10 +267,6 @@ def _free(stiffness: NDArray[np.float64], rigid: NDArray[np.bool_]) -> NDArray[n
 def _logarithm(stiffness: NDArray[np.float64], held: tuple) -> NDArray[np.float64]:
     """Logarithm of the stiffness of the motions that something resists."""
     values, vectors = np.linalg.eigh(stiffness[held])
-    if values.size and values[0] <= 0.0:
-        raise StructureError(
-            "a motion that something resists at one position of the axes is free at another"
-        )
     whole = np.zeros_like(stiffness)
     whole[held] = (vectors * np.log(values)) @ vectors.T
     return whole
