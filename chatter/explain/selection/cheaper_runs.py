@@ -67,7 +67,7 @@ def screened_candidates(
 def _promises(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> bool:
     """Whether all runs, linearised where an effect is not there, promise something by it.
 
-    The cheaper runs are at their noise: what is left of an effect is small. Steps from where it
+    The cheaper runs are at their noise: an effect that remains is small. Steps from where it
     helps cost several simulations of every run, this one for each of its numbers.
     """
     nothing = effect.nothing(problem.measured_by(effect))
