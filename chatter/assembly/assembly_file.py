@@ -100,7 +100,6 @@ class AssemblyFile(Description):
 
     NOUN: ClassVar[str] = "assembly"
     EXAMPLE_PATH: ClassVar[str] = "stick_out.longest"
-    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (("material", "cut", "structure"), "case")
     LAYOUT: ClassVar[Layout] = Layout(headed=frozenset(), alternatives={})
 
     title: str = ""

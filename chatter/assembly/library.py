@@ -101,7 +101,6 @@ class Library(Description):
 
     NOUN: ClassVar[str] = "library"
     EXAMPLE_PATH: ClassVar[str] = "tool.NAME.diameter"
-    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (("cut", "structure"), "case")
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset({("tool", "*"), ("holder", "*"), ("spindle", "*")}), alternatives={}
     )

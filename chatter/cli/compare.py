@@ -9,6 +9,7 @@ from chatter.cli import options
 from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.kinds_of_files import refuse_other_file
 from chatter.io.headings import signal_unit
 from chatter.report.console import print_table
 
@@ -26,6 +27,7 @@ def compare(
     from chatter.explain.comparison import compare as run_compare
     from chatter.explain.measurement_file import read_measurement
 
+    refuse_other_file(measurement, "measurement")
     declared = read_measurement(measurement, case)
     folder = options.output_folder(out, measurement.resolve().stem)
     with progress_bar("predicting the runs"):

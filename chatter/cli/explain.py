@@ -13,6 +13,7 @@ from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.formatting import signed
+from chatter.description.kinds_of_files import refuse_other_file
 from chatter.description.usual_units import usual_unit
 from chatter.report.console import print_answer, print_line, print_table
 from chatter.report.parameters import parameter_row
@@ -38,6 +39,7 @@ def explain(
     from chatter.explain.explanation import explain as run_explain
     from chatter.explain.measurement_file import read_measurement
 
+    refuse_other_file(measurement, "measurement")
     declared = read_measurement(measurement, case)
     folder = options.output_folder(out, measurement.resolve().stem)
     with progress_bar("reading the signals") as work:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
+from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
 from chatter.io.signals import read_signals
@@ -25,6 +26,7 @@ def read_records(
         If it cannot be read, or nothing tells which cut it is of.
     """
     path = Path(records)
+    refuse_other_file(path, "measurement")
     if path.is_dir() and not (path / "measurement.toml").is_file():
         raise InputError(_what_to_write(path))
     is_record = path.is_file() and path.suffix.lower() != ".toml"

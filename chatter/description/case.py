@@ -14,6 +14,7 @@ from chatter.description.case_checks import depth_problems, friction_problems, o
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written
 from chatter.description.patchable import Description
+from chatter.description.path import Step
 from chatter.description.renamed import Renamed
 from chatter.description.section import raise_if_any
 from chatter.description.sections.cut import Cut
@@ -35,7 +36,7 @@ from chatter.description.sections.process import (
 )
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
-from chatter.description.stated_cut import ALTERNATIVES, with_stated_cut
+from chatter.description.stated_cut import ALTERNATIVES, unsolved, with_stated_cut
 from chatter.description.stated_engagement import (
     ALTERNATIVE_ENGAGEMENTS,
     ENGAGEMENT_KEYS,
@@ -67,10 +68,6 @@ class Case(Description):
 
     NOUN: ClassVar[str] = "case"
     EXAMPLE_PATH: ClassVar[str] = "cut.axial_depth"
-    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
-        ("body", "beam", "connector", "point"),
-        "machine",
-    )
     RENAMED: ClassVar[tuple[Renamed, ...]] = renamed.CASE
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset({("friction", "*")}),
@@ -121,6 +118,10 @@ class Case(Description):
     @classmethod
     def _problems_of_draft(cls, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         return engagement_problems_of_draft(data)
+
+    @classmethod
+    def _follow_from_others(cls, data: Mapping[str, Any]) -> Mapping[tuple[Step, ...], str]:
+        return unsolved(data)
 
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         del data

@@ -15,6 +15,7 @@ from chatter.description.bare_speeds import give_speeds_their_unit, refuse_bare_
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
+from chatter.description.kinds_of_files import refuse_other_kind, with_article
 from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
     Step,
@@ -49,8 +50,6 @@ class Description(Section):
     NOUN: ClassVar[str]
     EXAMPLE_PATH: ClassVar[str]
     LAYOUT: ClassVar[Layout]
-    #: sections that only another kind of file has, and how that is called
-    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]]
     #: keys and values that have a new name
     RENAMED: ClassVar[tuple[Renamed, ...]] = ()
 
@@ -97,6 +96,15 @@ class Description(Section):
         """Tell, as path and sentence, what can be told of data that has other faults."""
         del data
         return ()
+
+    @classmethod
+    def _follow_from_others(cls, data: Mapping[str, Any]) -> Mapping[tuple[Step, ...], str]:
+        """Keys that come from others as the data state them, and what is to be said in their place.
+
+        That they are missing is said only where nothing else is wrong.
+        """
+        del data
+        return {}
 
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         """Tell, as path and sentence, what is wrong across sections that are right in themselves.
@@ -159,7 +167,7 @@ class Description(Section):
         """
         path = Path(path)
         text = read_text(path, cls.NOUN)
-        document = parse_document(text, str(path))
+        document = parse_document(text, str(path), cls.NOUN)
         refuse_bare_speeds(cls, document.unwrap(), str(path))
         return cls._of_document(document, str(path), path.parent, is_foreign=not was_written(text))
 
@@ -173,7 +181,7 @@ class Description(Section):
             If it describes nothing with the values either.
         """
         path = Path(path)
-        document = parse_document(read_text(path, cls.NOUN), str(path))
+        document = parse_document(read_text(path, cls.NOUN), str(path), cls.NOUN)
         for key, value in values.items():
             try:
                 steps = cls._steps(key)
@@ -219,8 +227,8 @@ class Description(Section):
         try:
             made = cls.model_validate(data, context=context)
         except ValidationError as error:
-            cls._refuse_other_kind(data, name)
-            problems = sentences(error, cls, name)
+            refuse_other_kind(data, name, cls.NOUN)
+            problems = sentences(error, cls, name, cls._follow_from_others(data))
             told = [f"{name}: {path}: {text}" for path, text in cls._problems_of_draft(data)]
             raise InputError(
                 [*problems, *(text for text in told if text not in problems)]
@@ -233,15 +241,6 @@ class Description(Section):
         if problems:
             raise InputError(problems)
         return made
-
-    @classmethod
-    def _refuse_other_kind(cls, data: Mapping[str, Any], name: str) -> None:
-        """Say in one sentence that a file of the other kind is given."""
-        keys, noun = cls.OTHER_KIND
-        found = [key for key in keys if key in data]
-        if len(found) > 1:
-            listed = " and ".join(f"[{key}]" for key in found)
-            raise InputError(f"{name}: is a {noun} ({listed}); a {cls.NOUN} is required")
 
     def get(self, path: str) -> Any:
         """Return the value at a dotted path, in SI; a tuple of all where a step is ``[*]``.
@@ -371,7 +370,7 @@ class Description(Section):
 
     @classmethod
     def _steps(cls, path: str) -> tuple[Step, ...]:
-        return parse_path(path, f"a {cls.NOUN}, such as {cls.EXAMPLE_PATH}")
+        return parse_path(path, f"{with_article(cls.NOUN)}, such as {cls.EXAMPLE_PATH}")
 
     @classmethod
     def _check_known(cls, steps: tuple[Step, ...]) -> None:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from chatter.description.path import field_at
+from chatter.description.path import Step, field_at
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.tool import Tool
 from chatter.description.units import QuantityError, parse
@@ -45,6 +45,24 @@ def with_stated_cut(data: Any) -> Any:
         if share is not None and diameter is not None:
             cut[key] = share * diameter
     return {**data, "cut": cut}
+
+
+#: what the keys of a shop are turned into the others by
+_NEEDED = {
+    "cutting_speed": "[tool] with a diameter",
+    "feed_rate": "[tool] with teeth, and a spindle speed",
+}
+
+
+def unsolved(data: Mapping[str, Any]) -> dict[tuple[Step, ...], str]:
+    """Paths of spindle speed and feed per tooth where [cut] states others, and what those need."""
+    cut = data.get("cut")
+    given = cut if isinstance(cut, Mapping) else {}
+    return {
+        ("cut", own): f"follows from cut.{stated}, which needs {_NEEDED[stated]}"
+        for stated, own in STATED.items()
+        if given.get(stated) is not None
+    }
 
 
 def _share(given: Any) -> float | None:

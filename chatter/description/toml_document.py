@@ -11,6 +11,7 @@ import tomlkit
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
+from chatter.description.kinds_of_files import other_format, with_article
 from chatter.description.path import Step, join_path
 
 _LARGEST_FILE = 256 * 1024
@@ -34,7 +35,7 @@ def read_text(path: Path, noun: str = "case") -> str:
     """
     try:
         if path.is_dir():
-            raise InputError(f"{path}: is a folder; a {noun} file is required")
+            raise InputError(f"{path}: is a folder; {with_article(noun)} file is required")
         with path.open("rb") as file:
             # a size is no use: pipes and devices have none
             raw = file.read(_LARGEST_FILE + 1)
@@ -45,7 +46,7 @@ def read_text(path: Path, noun: str = "case") -> str:
     except ValueError:
         raise InputError(f"{formatted(str(path))}: is not a file name") from None
     if b"\0" in raw:
-        raise InputError(f"{path}: is a binary file; a {noun} file is TOML text")
+        raise InputError(f"{path}: is a binary file; {with_article(noun)} file is TOML text")
     if len(raw) > _LARGEST_FILE:
         raise InputError(
             f"{path}: has more than {_LARGEST_FILE} bytes; no {noun} file is that large"
@@ -54,15 +55,16 @@ def read_text(path: Path, noun: str = "case") -> str:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(
-            f"{path}: is not UTF-8 text (byte {error.start}); a {noun} file is TOML text in UTF-8"
+            f"{path}: is not UTF-8 text (byte {error.start}); {with_article(noun)} file is TOML "
+            "text in UTF-8"
         ) from None
     if not text.strip():
-        raise InputError(f"{path}: is empty; a {noun} file is TOML text")
+        raise InputError(f"{path}: is empty; {with_article(noun)} file is TOML text")
     return text
 
 
-def parse_document(text: str, name: str) -> tomlkit.TOMLDocument:
-    """Parse TOML text; raise InputError with line and column."""
+def parse_document(text: str, name: str, noun: str = "case") -> tomlkit.TOMLDocument:
+    """Parse TOML text of what the noun says; raise InputError with line and column."""
     try:
         if sys.version_info >= (3, 11):
             import tomllib
@@ -72,6 +74,9 @@ def parse_document(text: str, name: str) -> tomlkit.TOMLDocument:
         return tomlkit.parse(text)
     except Exception as error:
         # whatever a parser of untrusted text stumbles over
+        if other := other_format(Path(name), text):
+            required = f"{with_article(noun)} file is TOML text"
+            raise InputError(f"{name}: {other}; {required}") from None
         raise InputError(f"{name}: is no valid TOML: {_reason(error)}") from None
 
 
@@ -102,7 +107,9 @@ def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
         return [plain(entry, (*steps, index), noun) for index, entry in enumerate(value)]
     known = value is None or isinstance(value, (bool, int, float, str, date, time))
     if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
-        raise InputError(f"{join_path(steps)}: {formatted(value)} is not a value of a {noun} file")
+        raise InputError(
+            f"{join_path(steps)}: {formatted(value)} is not a value of {with_article(noun)} file"
+        )
     return value
 
 

@@ -16,6 +16,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from chatter.description.formatting import formatted
 from chatter.description.known_units import MEASURED, SI_VALUE
+from chatter.description.shop_units import (
+    WORDS,
+    advice,
+    advice_on_number,
+    speed_of_any,
+    speed_of_shop,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -112,11 +119,9 @@ _CHARACTERS = str.maketrans(
     {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", ".": "*", "°": "deg", "^": "**"}
 )
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁻", "01234-")
-#: words of a unit -> as the units library has them
-_WORDS = {"Ns": "(N*s)", "mil": "thou", "ips": "(inch/s)"}
-#: the same in measured files, where g is the acceleration of gravity and a pound is a force
+#: words of a unit in measured files, where g is the acceleration of gravity and a pound a force
 _MEASURED_WORDS = {
-    **_WORDS,
+    **WORDS,
     "g": "standard_gravity",
     "G": "standard_gravity",
     "mg": "millistandard_gravity",
@@ -198,6 +203,8 @@ def known_by_heart(text: str, dimension: str) -> bool:
 
 def asked_of_library(unit: str, dimension: str) -> float:
     """SI value of one unit by the units library; as `unit_factor`, which knows many by heart."""
+    if dimension in _CYCLIC:
+        unit = speed_of_shop(unit) or unit
     parsed, one = _parsed_unit(unit, dimension)
     if dimension == "number":
         if unit in _NUMBER_UNITS:
@@ -217,7 +224,7 @@ def asked_of_library(unit: str, dimension: str) -> float:
 
 def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
     """Return pint's unit and one of it in base units."""
-    known = _unit_of_library(unit, _WORDS)
+    known = _unit_of_library(unit, WORDS)
     if known is None:
         raise QuantityError(f"has the unknown unit {formatted(unit)}; {_wanted(dimension)}")
     parsed, one, proportional = known
@@ -256,6 +263,7 @@ def measured_unit(unit: str) -> MeasuredUnit | None:
 
 def measured_by_library(unit: str) -> MeasuredUnit | None:
     """Unit of a measured file by the units library; as `measured_unit`, which knows many."""
+    unit = speed_of_any(unit) or unit
     known = _unit_of_library(unit.strip(), _MEASURED_WORDS) if len(unit) <= _LONGEST_TEXT else None
     if known is None or not known[2]:
         return None
@@ -321,6 +329,9 @@ def parse(given: Any, dimension: str) -> Quantity:
     match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
     if match is None:
         raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")
+    hint = advice_on_number(given) or advice(match["value"], match["unit"], dimension)
+    if hint:
+        raise QuantityError(f"{formatted(given)} {hint}")
     if _DECIMAL_COMMA.match(given):
         raise QuantityError(f"{formatted(given)} has a decimal comma; write a decimal point")
     unit = match["unit"]

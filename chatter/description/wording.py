@@ -16,7 +16,12 @@ _IS_MISSING = "is missing"
 _LONGEST_KEY = 60
 
 
-def sentences(error: ValidationError, model: type[BaseModel], name: str) -> list[str]:
+def sentences(
+    error: ValidationError,
+    model: type[BaseModel],
+    name: str,
+    consequences: Mapping[tuple[Step, ...], str] | None = None,
+) -> list[str]:
     """Turn the errors of a validation into one sentence each.
 
     Parameters
@@ -26,12 +31,17 @@ def sentences(error: ValidationError, model: type[BaseModel], name: str) -> list
         Class that was validated.
     name : str
         File, for the beginning of each sentence.
+    consequences : mapping, optional
+        Of keys that come from others: what to say where they are missing and nothing else is wrong.
     """
     problems = [
         ((*item["loc"], key) if key else tuple(item["loc"]), text)
         for item in error.errors(include_url=False)
         for key, text in _problems(item, model)
     ]
+    consequences = consequences or {}
+    others = [one for one in problems if not _is_consequence(one, consequences)]
+    problems = others or [(steps, consequences.get(steps, text)) for steps, text in problems]
     misspelt = {
         (*steps[:-1], _nearest_key(model, steps))
         for steps, text in problems
@@ -47,6 +57,13 @@ def sentences(error: ValidationError, model: type[BaseModel], name: str) -> list
         return texts
     more = len(texts) - _MOST_SENTENCES
     return [*texts[:_MOST_SENTENCES], f"{name}: and {more} more of this kind"]
+
+
+def _is_consequence(
+    problem: tuple[tuple[Step, ...], str], consequences: Mapping[tuple[Step, ...], str]
+) -> bool:
+    steps, text = problem
+    return steps in consequences and text.startswith(_IS_MISSING)
 
 
 def _problems(item: Any, model: type[BaseModel]) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
 from chatter.io.signals import read_signals
@@ -30,6 +31,7 @@ def read_cuts(path: str | Path, case: Case) -> Measurement:
     record-n.csv beside the table. InputError if it is missing or has no such column.
     """
     path = Path(path)
+    refuse_other_file(path, "measurement")
     if path.is_dir() or path.suffix == ".toml":
         measurement = read_measurement(path, case)
         if measurement.kind != "stability":

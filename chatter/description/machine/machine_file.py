@@ -41,10 +41,6 @@ class MachineFile(Description):
 
     NOUN: ClassVar[str] = "machine"
     EXAMPLE_PATH: ClassVar[str] = "axis.Y.control.position.gain"
-    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
-        ("tool", "material", "cut", "structure"),
-        "case",
-    )
     RENAMED: ClassVar[tuple[Renamed, ...]] = renamed.MACHINE
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset(

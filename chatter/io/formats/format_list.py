@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from chatter.description.kinds_of_files import kind_of_file
 from chatter.description.registry import Registry
 from chatter.io.files import read_content
 from chatter.io.formats.abaqus import ABAQUS_INPUT, ABAQUS_MATRIX
@@ -61,6 +62,8 @@ def format_of(path: Path, content: Content) -> Format:
     for one in candidates:
         if path.suffix.lower() in one.extensions:
             return one
+    if kind := kind_of_file(path, "record"):
+        raise MeasurementError(f"{path}: {kind}")
     raise MeasurementError(
         f"{path}: the extension {path.suffix!r} is of no known format; formats of {content} that "
         f"are read: {listed(candidates)}"
