@@ -157,6 +157,7 @@ def _entries(machine: Machine) -> list[NDArray[np.float64]]:
         structure.stiffness,
         *(drive.row for drive in machine.drives),
         *(friction.row for friction in machine.frictions),
+        *(backlash.row for backlash in machine.backlashes),
         *structure.points.values(),
     ]
 

@@ -101,6 +101,7 @@ def _decisive_motion(machine: Machine, step: float) -> _DecisiveMotion | None:
         machine,
         frictions=(),
         preloads=(),
+        backlashes=(),
         drives=tuple(
             drive._replace(controller=without_limits(drive.controller)) for drive in machine.drives
         ),

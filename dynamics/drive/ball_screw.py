@@ -65,6 +65,7 @@ class BallScrew:
     belt: Belt | None = None  # between motor and screw
     axial_damping: float = 0.0  # of bearings, shaft and nut together, N s/m
     torsional_damping: float = 0.0  # of coupling and shaft together, N m s/rad
+    backlash: float = 0.0  # of the nut, from flank to flank, m of travel
 
     def __post_init__(self) -> None:
         where = "ball screw"
@@ -82,6 +83,7 @@ class BallScrew:
             screw_inertia=self.screw_inertia,
             axial_damping=self.axial_damping,
             torsional_damping=self.torsional_damping,
+            backlash=self.backlash,
         )
         held_twice = self.shaft is not None and self.shaft.support == "fixed-fixed"
         if np.isfinite(self.far_bearing_stiffness) and not held_twice:
@@ -138,7 +140,7 @@ class BallScrew:
             twist / self.travel**2,
             self.torsional_damping / self.travel**2,
         )
-        nut = Spring(f"{axis.name}: nut", stiffness, self.axial_damping)
+        nut = Spring(f"{axis.name}: nut", stiffness, self.axial_damping, self.backlash)
         supports = self._supports(axis)
         turns = turning_direction(axis, self.lead)
         housing = Housing(axis.carrying, _place(axis, supports[0].station), turns)

@@ -22,6 +22,7 @@ class Spring(NamedTuple):
     name: str
     stiffness: float  # N/m of travel; infinite if rigid
     damping: float = 0.0  # N s/m
+    backlash: float = 0.0  # gap in which it does not act, from flank to flank, m of travel
 
 
 RIGID = Spring("rigid", np.inf)
@@ -66,14 +67,14 @@ def in_series(springs: Sequence[Spring]) -> Spring:
     """One spring for several in a row, named as the last of them that gives way.
 
     The damping takes as much energy in slow motion as the dampers of all do at their share of
-    the stretch.
+    the stretch. Gaps add up.
     """
     stiffness = series_stiffness([spring.stiffness for spring in springs])
     if np.isinf(stiffness):
         return springs[-1]
     name = [spring.name for spring in springs if np.isfinite(spring.stiffness)][-1]
     damping = sum(one.damping * (stiffness / one.stiffness) ** 2 for one in springs)
-    return Spring(name, stiffness, damping)
+    return Spring(name, stiffness, damping, sum(spring.backlash for spring in springs))
 
 
 def series_stiffness(stiffness: Sequence[float]) -> float:
@@ -126,6 +127,7 @@ def gear_train(
             (*ahead, *reversed_terms(behind)),
             lump.spring.stiffness,
             lump.spring.damping,
+            lump.spring.backlash,
         )
         for lump, ahead, behind in zip(lumps, motions[:-1], motions[1:], strict=True)
     )

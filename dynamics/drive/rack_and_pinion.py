@@ -80,6 +80,8 @@ class RackAndPinion:
     mesh_damping: float = 0.0  # N s/m
     gearbox_damping: float = 0.0  # N m s/rad
     coupling_damping: float = 0.0  # N m s/rad
+    #: of each gearbox and pinion together, from flank to flank, m along the rack
+    backlash: float = 0.0
     #: {"moving", "carrying"}, part that the motors ride on; the rack is on the other one
     motors_on: Literal["moving", "carrying"] = "moving"
 
@@ -95,6 +97,7 @@ class RackAndPinion:
             "mesh_damping",
             "gearbox_damping",
             "coupling_damping",
+            "backlash",
         )
         require_not_negative(where, **{what: getattr(self, what) for what in others})
         if self.motors_on not in ("moving", "carrying"):
@@ -178,7 +181,7 @@ class RackAndPinion:
             self.gearbox_stiffness / radius**2,
             self.gearbox_damping / radius**2,
         )
-        mesh = Spring(f"{prefix}mesh{name}", self.mesh_stiffness, self.mesh_damping)
+        mesh = Spring(f"{prefix}mesh{name}", self.mesh_stiffness, self.mesh_damping, self.backlash)
         return [
             Stage(f"{prefix}motor{name}", motor.inertia, at_motor, coupling),
             Stage(f"{prefix}gearbox{name}", self.gearbox_inertia, at_motor, gearbox),

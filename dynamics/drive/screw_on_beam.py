@@ -64,6 +64,7 @@ class ScrewOnBeam:
     torsional_damping: float = 0.0  # of the coupling, N m s/rad
     radial_damping: tuple[float, float] = (0.0, 0.0)  # of the nut, N s/m
     tilt_damping: tuple[float, float] = (0.0, 0.0)  # of the nut, N m s/rad
+    backlash: float = 0.0  # of the nut along the thread, from flank to flank, m of travel
 
     def __post_init__(self) -> None:
         where = f'screw on beam "{self.beam}"'
@@ -76,6 +77,7 @@ class ScrewOnBeam:
             motor_inertia=self.motor_inertia,
             axial_damping=self.axial_damping,
             torsional_damping=self.torsional_damping,
+            backlash=self.backlash,
         )
         for what in ("radial", "tilt", "radial_damping", "tilt_damping"):
             for value in finite(where, what, getattr(self, what), (2,)):
@@ -148,7 +150,9 @@ class ScrewOnBeam:
             turning(axis.moving, axis.at, turns, self.travel),
             turning(self.beam, axis.at, turns, -self.travel),
         )
-        return Coupling(f"{axis.name}: thread", terms, self.axial, self.axial_damping)
+        return Coupling(
+            f"{axis.name}: thread", terms, self.axial, self.axial_damping, self.backlash
+        )
 
     def _axes(self, where: str, axis: DrivenAxis) -> NDArray[np.float64]:
         """(3, 3): rows are the two radial directions and the axis."""

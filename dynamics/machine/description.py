@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.control.cascade import DriveController
+from dynamics.drive.backlash import Backlash
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.friction.laws import FrictionLaw
 from dynamics.reduction.modal_truncation import Modes, undamped_modes, with_static_shapes
@@ -130,6 +131,15 @@ class Friction(NamedTuple):
     row: NDArray[np.float64]  # (n,)
 
 
+class BacklashAt(NamedTuple):
+    """Backlash of a spring, whose stretch is a row of the structure."""
+
+    name: str
+    law: Backlash
+    row: NDArray[np.float64]  # (n,)
+    axis: str  # whose travel changes the stiffness of the spring
+
+
 class ConstantForce(NamedTuple):
     """Force that never changes along a row of the structure."""
 
@@ -152,6 +162,8 @@ class Machine:
     basis: NDArray[np.float64] | None = None
     #: undamped modes of the structure, where they were needed to assemble it
     modes: Modes | None = None
+    #: the structure holds their springs as closed: so does all that is linear
+    backlashes: tuple[BacklashAt, ...] = ()
 
     def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
         """Row (n,) of the sum of motions of parts, as a port of the structure."""
@@ -224,6 +236,7 @@ def full_machine(parts: MachineParts, conditions: Mapping[str, Condition] | None
         tuple(axis.name for axis in parts.axes),
         whole,
         modes=modes,
+        backlashes=_backlashes(driven, whole),
     )
 
 
@@ -255,8 +268,8 @@ def _links(
 def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = None) -> Machine:
     """Machine of the modes up to a frequency, with the static answer of the others.
 
-    The frequency is in Hz. The static answer to forces is kept at drives, frictions and the points
-    named; all points by default.
+    The frequency is in Hz. The static answer to forces is kept at drives, frictions, backlashes and
+    the points named; all points by default.
     """
     return reduced_to(full, _modes_up_to(full, highest), kept_points)
 
@@ -270,6 +283,7 @@ def reduced_to(full: Machine, modes: Modes, kept_points: Sequence[str] | None = 
         *(drive.row for drive in full.drives),
         *(friction.row for friction in full.frictions),
         *(preload.row for preload in full.preloads),
+        *(backlash.row for backlash in full.backlashes),
     ]
     loads = np.array([*points, *forces]).reshape(-1, structure.size)
     compact, basis = with_static_shapes(structure, modes, loads, full.modes)
@@ -295,6 +309,7 @@ def in_coordinates(full: Machine, structure: LinearStructure, basis: NDArray) ->
         ),
         frictions=tuple(one._replace(row=one.row @ basis) for one in full.frictions),
         preloads=tuple(one._replace(row=one.row @ basis) for one in full.preloads),
+        backlashes=tuple(one._replace(row=one.row @ basis) for one in full.backlashes),
         basis=basis,
     )
 
@@ -358,6 +373,20 @@ def _controlled(axis: MachineAxis, motors: Sequence[Motor], whole: Assembly) -> 
         Drive(motor.name, axis.name, row, scale, controller)
         for motor, row, controller in zip(motors, rows, axis.controllers, strict=True)
     ]
+
+
+def _backlashes(driven: Mapping[str, DriveParts], whole: Assembly) -> tuple[BacklashAt, ...]:
+    return tuple(
+        BacklashAt(
+            one.name,
+            Backlash(one.stiffness, one.damping, one.backlash),
+            whole.row(one.name, one.terms),
+            axis,
+        )
+        for axis, drive in driven.items()
+        for one in drive.couplings
+        if one.backlash > 0.0
+    )
 
 
 def _friction_row(one: FrictionAt, whole: Assembly, structure: LinearStructure) -> NDArray:

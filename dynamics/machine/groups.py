@@ -1,8 +1,8 @@
-"""Law groups of a machine: controlled drives, constant forces, loads and frictions on the bus.
+"""Law groups of a machine: controlled drives, constant forces, loads, frictions and backlashes.
 
 A group is a table and two kernels: `forces` puts its forces on the ports of the bus, `commit` takes
 the motion of the step into its memory. Drives, constant forces and loads are known at the beginning
-of a step; frictions are solved for together with its motion.
+of a step; frictions and backlashes are solved for together with its motion.
 """
 
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from dynamics.compiled import INLINED, for_each
 from dynamics.control.drive_step import control_step
 from dynamics.control.drive_table import TORQUE_INJECTED, ControlTable
+from dynamics.drive.backlash import BacklashTable, opening_step, stiffness_at
 from dynamics.friction.laws import Frictions, friction_advance, friction_step
 from dynamics.machine.ports import add_constant_force
 from dynamics.trajectory.set_points import SetPoints, set_point_at
@@ -52,22 +53,26 @@ class Loads(NamedTuple):
 
 
 class FrictionsOnPorts(NamedTuple):
-    """All frictions of a structure, which feel one another through it."""
+    """All frictions and backlashes of a structure, which feel one another through it."""
 
     by_law: tuple[Frictions, ...]
+    backlashes: tuple[BacklashTable, ...]  # one, or none
     together: int  # 1 where the force of one moves the port of another
     sweep: NDArray[np.int64]  # number of the sweep, and whether any force changed in it, (2,)
     work: NDArray[np.float64]  # that they have taken since the start, J, (1,)
 
 
 def frictions_on_ports(
-    groups: tuple[Frictions, ...], step_compliance: NDArray[np.float64]
+    groups: tuple[Frictions, ...],
+    step_compliance: NDArray[np.float64],
+    backlashes: tuple[BacklashTable, ...] = (),
 ) -> FrictionsOnPorts:
-    """Return frictions at rest on the ports of a structure."""
-    ports = np.concatenate([group.law.port for group in groups])
+    """Return frictions at rest, and backlashes, on the ports of a structure."""
+    ports = np.concatenate([*(group.law.port for group in groups), *(b.port for b in backlashes)])
     answers = step_compliance[np.ix_(ports, ports)]
     together = int(np.any(answers != np.diag(np.diag(answers))))
-    return FrictionsOnPorts(groups, together, np.zeros(2, dtype=np.int64), np.zeros(1))
+    sweep = np.zeros(2, dtype=np.int64)
+    return FrictionsOnPorts(groups, backlashes, together, sweep, np.zeros(1))
 
 
 @register_jitable(**INLINED)
@@ -148,15 +153,51 @@ def _commit_each(frictions, group, bus):
         bus.next_force[p] = -frictions.force[i]
 
 
+@register_jitable(**INLINED)
+def _follow_axes(backlashes, group, bus):  # noqa: ARG001
+    """Take the stiffness of the springs from where their axes are."""
+    for i in range(backlashes.port.shape[0]):
+        if backlashes.travel[i] >= 0:
+            travel = bus.u_before[backlashes.travel[i]]
+            backlashes.stiffness[i] = stiffness_at(backlashes, i, travel)
+
+
+@register_jitable(**INLINED)
+def _open_each(backlashes, group, bus):
+    """Solve each backlash with all other forces as they are."""
+    for i in range(backlashes.port.shape[0]):
+        p = backlashes.port[i]
+        gx, held = bus.step_compliance[p, p], backlashes.force[i]
+        free = bus.u[p] - bus.u_before[p] - gx * held
+        force = opening_step(backlashes, i, bus.u_before[p], free, gx, bus.step)
+        if force != held:
+            add_constant_force(bus, p, force - held)
+            backlashes.force[i] = force
+            if abs(force - held) * gx > _UNHEARD * abs(free) + _UNSEEN:
+                group.sweep[1] = group.together
+
+
+@register_jitable(**INLINED)
+def _hold_each(backlashes, group, bus):  # noqa: ARG001
+    """Leave the forces of backlashes for the next step to begin with."""
+    for i in range(backlashes.port.shape[0]):
+        bus.next_force[backlashes.port[i]] = backlashes.force[i]
+
+
 _solve_all = for_each(_solve_each)
 _commit_all = for_each(_commit_each)
+_follow_all = for_each(_follow_axes)
+_open_all = for_each(_open_each)
+_hold_all = for_each(_hold_each)
 
 
 @register_jitable(**INLINED)
 def friction_forces(group, bus, clock):  # noqa: ARG001
-    """Solve for all frictions, from those of the last step, in sweeps until none need another."""
+    """Solve for all of them, from those of the last step, in sweeps until none need another."""
+    _follow_all(group.backlashes, group, bus)
     for sweep in range(_MOST_SWEEPS):
         group.sweep[0], group.sweep[1] = sweep, 0
+        _open_all(group.backlashes, group, bus)
         _solve_all(group.by_law, group, bus)
         if group.sweep[1] == 0:
             break
@@ -164,5 +205,6 @@ def friction_forces(group, bus, clock):  # noqa: ARG001
 
 @register_jitable(**INLINED)
 def friction_commit(group, bus, clock):  # noqa: ARG001
-    """Move all frictions with their ports."""
+    """Move all frictions with their ports, and keep the forces of backlashes."""
     _commit_all(group.by_law, group, bus)
+    _hold_all(group.backlashes, group, bus)

@@ -41,6 +41,14 @@ class MachinesAlong(NamedTuple):
     #: parts of each distance between two positions, by axis, at whose ends there are exact steps
     parts: tuple[int, ...]
 
+    def machines_along(self, axis: int) -> list[Machine]:
+        """Machines along one axis, by its number, with the others where they start."""
+        counts = [len(one) for one in self.positions]
+        start = np.unravel_index(_start(self), counts)
+        numbers = np.arange(len(self.machines)).reshape(counts)
+        places = tuple(slice(None) if one == axis else at for one, at in enumerate(start))
+        return [self.machines[number] for number in numbers[places]]
+
 
 class MovingStructure(NamedTuple):
     """Steps of a structure at t positions of its axes, and where the blend of them stands.

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.control.drive_table import control_table
+from dynamics.drive.backlash import BacklashTable, backlash_table
 from dynamics.friction.law import FrictionLaw
 from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
@@ -95,7 +96,10 @@ def machine_tables(
     frictions = friction_groups(
         [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
     )
-    implicit = (frictions_on_ports(frictions, bus.step_compliance),) if frictions else ()
+    backlashes = (_backlash_table(machine, port, along),) if machine.backlashes else ()
+    implicit: tuple = ()
+    if frictions or backlashes:
+        implicit = (frictions_on_ports(frictions, bus.step_compliance, backlashes),)
     return StructureTables(bus, explicit, (*implicit, *accounts), port)
 
 
@@ -151,6 +155,8 @@ def _rows(machine: Machine, loads: Mapping, outputs: Mapping):
         yield _friction(one), one.row
     for one in machine.preloads:
         yield one.name, one.row
+    for one in machine.backlashes:
+        yield f"backlash {one.name}", one.row
     yield from loads.items()
     for drive in machine.drives:
         yield f"scale {drive.name}", drive.scale
@@ -161,6 +167,26 @@ def _rows(machine: Machine, loads: Mapping, outputs: Mapping):
 
 def _friction(one) -> str:
     return f"friction {one.name}"
+
+
+def _backlash_table(
+    machine: Machine, port: Mapping[str, int], along: MachinesAlong | None
+) -> BacklashTable:
+    """Backlashes of a machine, their springs as stiff as where their axes are."""
+    laws, positions, travel = [], [], []
+    drives = {drive.axis: drive.name for drive in reversed(machine.drives)}
+    for index, one in enumerate(machine.backlashes):
+        if along is None or one.axis not in along.axes:
+            laws.append([one.law])
+            positions.append(np.zeros(1))
+            travel.append(-1)
+        else:
+            axis = along.axes.index(one.axis)
+            laws.append([there.backlashes[index].law for there in along.machines_along(axis)])
+            positions.append(along.positions[axis])
+            travel.append(port[f"scale {drives[one.axis]}"])
+    ports = [port[f"backlash {one.name}"] for one in machine.backlashes]
+    return backlash_table(laws, ports, travel, positions)
 
 
 def _controlled(

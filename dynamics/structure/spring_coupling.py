@@ -56,13 +56,14 @@ class Coupling:
     terms: Sequence[Term]
     stiffness: float  # N/m (N m/rad where the sum is an angle)
     damping: float = 0.0  # N s/m and kin
+    backlash: float = 0.0  # gap in which neither acts, from flank to flank, m or rad
 
     def __post_init__(self) -> None:
         where = f'coupling "{self.name}"'
         object.__setattr__(self, "terms", tuple(self.terms))
         if not self.terms:
             raise StructureError(f"{where} ties nothing: it has no terms")
-        for what in ("stiffness", "damping"):
+        for what in ("stiffness", "damping", "backlash"):
             value = getattr(self, what)
             if not (np.isfinite(value) and value >= 0.0):
                 raise StructureError(f"{where}: {what} is {value:g}; it must be 0 or more")

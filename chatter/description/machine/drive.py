@@ -118,6 +118,9 @@ class DriveSection(Section):
     gearbox_damping: quantity("rotational_damping", at_least=0.0) | None = None
     coupling_damping: quantity("rotational_damping", at_least=0.0) | None = None
     motors_on: Literal["moving", "carrying"] | None = None
+    backlash: quantity("length", at_least=0.0) | None = Field(
+        None, description="of nut or pinion, from flank to flank, along the axis"
+    )
     offsets: Positions | None = Field(None, description="of each linear motor, from at of the axis")
     shares: tuple[quantity("number", at_least=0.0), ...] | None = None
     inertia: quantity("moment_of_inertia", above=0.0) | None = Field(
