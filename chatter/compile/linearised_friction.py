@@ -46,6 +46,17 @@ def linearised_frf(
     return receptance(machine, frequency, rows, step, frictions)[:, 0, 1]
 
 
+def closed_backlashes(machine: Machine) -> tuple[str, ...]:
+    """Note on how a linear analysis takes the backlashes of a machine; empty without any."""
+    if not machine.backlashes:
+        return ()
+    listed = ", ".join(f"{one.name} {one.law.gap * 1e6:.3g} um" for one in machine.backlashes)
+    return (
+        f"backlash ({listed}) is taken as closed, pressed on one flank by a steady load; a drive "
+        "whose load reverses is softer than that (chatter move, chatter simulate)",
+    )
+
+
 def linearised_frictions(
     machine: Machine,
     velocity: Mapping[str, float],

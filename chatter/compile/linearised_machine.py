@@ -10,7 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import RESTING, linearised_frictions, rigid_motion
+from chatter.compile.linearised_friction import (
+    RESTING,
+    closed_backlashes,
+    linearised_frictions,
+    rigid_motion,
+)
 from chatter.compile.machine_cut import MachineCut, machine_cut
 from chatter.compile.real_modes import largest_misfit, lines_around, real_modes
 from chatter.description.case import Case
@@ -141,7 +146,7 @@ class LinearisedMachine:
                 else f"are linearised at vibration of {amplitude * 1e6:g} um along their axes"
             )
             notes.append(f"frictions of axes that move slide, those of others {others}")
-        notes += self._fitted.notes
+        notes += [*closed_backlashes(self.cut.machine), *self._fitted.notes]
         return tuple(notes)
 
     @property

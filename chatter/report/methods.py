@@ -100,8 +100,8 @@ METHODS = {
     ),
     "move": Method(
         "How well does the machine follow its path?",
-        "The machine with structure, friction, drives and sampled control is run in time; contour "
-        "error is the distance to the path.",
+        "The machine with structure, friction, backlash, drives and sampled control is run in "
+        "time; contour error is the distance to the path.",
     ),
     "export": Method(
         "The machine as a state space.",

@@ -10,6 +10,7 @@ screw_shaft     axial and torsional stiffness of a screw where the nut is
 ball_screw      ball screw as a rotor, with bearings, shaft and nut in a row
 screw_on_beam   ball screw as a beam, with the stiffness between screw and nut
 rack_and_pinion rack and pinion with gearboxes, several motors, preload
+backlash        spring and damper of a nut or pinion that act beyond a gap only
 linear_motor    linear motors, single or sharing a force
 rotary          spindles and rotary tables
 =============== ====================================================================

@@ -1,12 +1,12 @@
 """Backlash: a spring and its damper that act beyond a gap only.
 
-F = k (u - s(u)) + c v outside the gap and 0 in it, where the stretch u counts from the middle of
-the gap and s(u) is u limited to half the gap on either side (dead zone; Gelb and Vander Velde 1968,
-Multiple-Input Describing Functions, appendix B.1). The structure holds the spring as closed; what
-the gap changes is a force k s(u) + c s'(u) v back on it. It is held over a step at its mean along
-the motion of the step (discrete gradient; Gonzalez 1996, J. Nonlinear Sci. 6:449), so that the
-energy stored beyond the gap is kept whatever the step, and that of the damper never grows. On
-a flank it is constant, and the step of the structure stays exact.
+F = k (u - s(u)) + c v outside the gap and 0 in it, where the elongation u counts from the middle
+of the gap and s(u) is u limited to half the gap on either side (dead zone; Gelb and Vander Velde
+1968, Multiple-Input Describing Functions, appendix B.1). The structure holds the spring as closed;
+what the gap changes is a force k s(u) + c s'(u) v back on it. It is held over a step at its mean
+along the motion of the step (discrete gradient; Gonzalez 1996, J. Nonlinear Sci. 6:449), so that
+the energy stored beyond the gap is kept whatever the step, and the damper gives none back. On a
+flank it is constant, and the step of the structure stays exact.
 """
 
 import math
@@ -47,17 +47,18 @@ class Backlash:
         if not (np.isfinite(self.damping) and self.damping >= 0.0):
             raise StructureError(f"backlash: damping is {self.damping}; it must be 0 or more")
 
-    def elastic_force(self, stretch: ArrayLike) -> NDArray[np.float64]:
-        """Force of the spring, N, at a stretch from the middle of the gap, m."""
-        stretch = np.asarray(stretch, dtype=np.float64)
+    def elastic_force(self, elongation: ArrayLike) -> NDArray[np.float64]:
+        """Force of the spring, N, at an elongation from the middle of the gap, m."""
+        elongation = np.asarray(elongation, dtype=np.float64)
         half = 0.5 * self.gap
-        return self.stiffness * (stretch - np.clip(stretch, -half, half))
+        return self.stiffness * (elongation - np.clip(elongation, -half, half))
 
     def describing_function(self, amplitude: float) -> float:
-        """Equivalent stiffness, N/m, under a stretch A sin(w t) about the middle of the gap; m.
+        """Equivalent stiffness, N/m, under an elongation A sin(w t) about the middle of the gap; m.
 
         k (1 - 2/pi (asin r + r sqrt(1 - r^2))), r half the gap over the amplitude; 0 within the
-        gap. Gelb and Vander Velde 1968, appendix B.1, dead zone. ValueError if the amplitude is not
+        gap. The damper, which follows the rate of the same u - s(u), is less by the same share.
+        Gelb and Vander Velde 1968, appendix B.1, dead zone. ValueError if the amplitude is not
         above 0.
         """
         if not amplitude > 0.0:
@@ -74,7 +75,7 @@ class BacklashTable(NamedTuple):
     damping: NDArray[np.float64]  # N s/m
     position: NDArray[np.float64]  # of the axis from the start, ascending, m, (n, m)
     log_stiffness: NDArray[np.float64]  # logarithm of N/m at each, (n, m)
-    port: NDArray[np.int64]  # its stretch
+    port: NDArray[np.int64]  # its elongation
     travel: NDArray[np.int64]  # port that tells where the axis is; -1 where nothing changes
     stiffness: NDArray[np.float64]  # where the axis is now, N/m: state
     force: NDArray[np.float64]  # held over the last step, N: state
@@ -133,47 +134,49 @@ def stiffness_at(table, i, travel):
 
 
 @leaf
-def opening_force(table, i, stretch, motion, h):
+def opening_force(table, i, elongation, motion, h):
     """Mean force, N, that opens the closed spring over a motion (m) in a time h (s).
 
-    From a stretch, m: k times the mean of the stretch limited to the gap, and c/h times the part of
-    the motion within the gap.
+    From an elongation, m: k times the mean of the elongation limited to the gap, and c/h times the
+    part of the motion within the gap.
     """
-    half, end = table.half[i], stretch + motion
-    first, last = min(max(stretch, -half), half), min(max(end, -half), half)
+    half, end = table.half[i], elongation + motion
+    first, last = min(max(elongation, -half), half), min(max(end, -half), half)
     if first == last:
         return table.stiffness[i] * first
     across = last - first
-    beyond = (first - stretch) * first + (end - last) * last
+    beyond = (first - elongation) * first + (end - last) * last
     mean = (0.5 * across * (first + last) + beyond) / motion
     return table.stiffness[i] * mean + table.damping[i] / h * across
 
 
 @leaf
-def opening_step(table, i, stretch, free, compliance, h):
+def opening_step(table, i, elongation, free, compliance, h):
     """Opening force, N, held over a step of time h, s, solved together with the motion.
 
-    The stretch at the beginning is in m; it moves by `free`, m, without this force, and by the
+    The elongation at the beginning is in m; it moves by `free`, m, without this force, and by the
     compliance, m/N, more with each N of it.
     """
     k, half = table.stiffness[i], table.half[i]
-    if abs(stretch) >= half:
-        flank = half if stretch > 0.0 else -half
-        end = stretch + free + compliance * k * flank
+    if abs(elongation) >= half:
+        flank = half if elongation > 0.0 else -half
+        end = elongation + free + compliance * k * flank
         if end * flank >= half * half:
             return k * flank
     else:
         slope = 0.5 * k + table.damping[i] / h
         left = 1.0 - compliance * slope
         if left > 0.0:
-            motion = (free + compliance * k * stretch) / left
-            if abs(stretch + motion) <= half:
-                return k * stretch + slope * motion
-    return opening_force(table, i, stretch, _across(table, i, stretch, free, compliance, h), h)
+            motion = (free + compliance * k * elongation) / left
+            if abs(elongation + motion) <= half:
+                return k * elongation + slope * motion
+    return opening_force(
+        table, i, elongation, _across(table, i, elongation, free, compliance, h), h
+    )
 
 
 @leaf
-def _across(table, i, stretch, free, compliance, h):
+def _across(table, i, elongation, free, compliance, h):
     """Motion d, m, with d = free + compliance F(d), where it crosses a flank.
 
     The force is bounded, so that the motion is too; false position with halved ends (Illinois;
@@ -181,8 +184,8 @@ def _across(table, i, stretch, free, compliance, h):
     """
     most = table.half[i] * (table.stiffness[i] + 2.0 * table.damping[i] / h)
     a, b = free - compliance * most, free + compliance * most
-    fa = a - free - compliance * opening_force(table, i, stretch, a, h)
-    fb = b - free - compliance * opening_force(table, i, stretch, b, h)
+    fa = a - free - compliance * opening_force(table, i, elongation, a, h)
+    fb = b - free - compliance * opening_force(table, i, elongation, b, h)
     if fa >= 0.0:
         return a
     if fb <= 0.0:
@@ -190,7 +193,7 @@ def _across(table, i, stretch, free, compliance, h):
     x = a
     for _ in range(_ITERATIONS):
         x = b - fb * (b - a) / (fb - fa)
-        f = x - free - compliance * opening_force(table, i, stretch, x, h)
+        f = x - free - compliance * opening_force(table, i, elongation, x, h)
         if f == 0.0 or abs(b - a) <= _ROUNDING * (abs(x) + table.half[i]):
             break
         if (f > 0.0) == (fb > 0.0):

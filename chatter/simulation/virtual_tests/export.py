@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from chatter.compile.linearised_friction import closed_backlashes
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import StateSection, parse_tested_point
 from chatter.description.machine.machine_file import MachineFile, load_machine
@@ -32,6 +33,8 @@ class StateSpaceExport:
         Places such as ``"motor:Y"`` and ``"tool/work:x"``.
     input_units, output_units : tuple of str
         ``"N"`` or ``"N*m"``, ``"m"`` or ``"rad"``.
+    assumed : tuple of str
+        What was made linear.
     """
 
     file: MachineFile
@@ -40,6 +43,7 @@ class StateSpaceExport:
     outputs: tuple[str, ...]
     input_units: tuple[str, ...]
     output_units: tuple[str, ...]
+    assumed: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Short: the matrices would fill the screen."""
@@ -56,7 +60,8 @@ class StateSpaceExport:
             "outputs": self._listed(self.outputs, self.output_units),
             "natural_frequencies_Hz": elastic.tolist(),
             "notes": [
-                "control loops are open and frictions are left out; preload and weight do not show"
+                "control loops are open and frictions are left out; preload and weight do not show",
+                *self.assumed,
             ],
         }
 
@@ -143,6 +148,7 @@ def export(
         names[1],
         tuple("N*m" if turns else "N" for turns in turning[0]),
         tuple("rad" if turns else "m" for turns in turning[1]),
+        closed_backlashes(assembled),
     )
 
 

@@ -47,6 +47,7 @@ class FrfCurve:
     tested: Frf | None = None
     excited: Literal["force", "torque"] = "force"
     read: Literal["displacement", "rotation"] = "displacement"
+    notes: tuple[str, ...] = ()  # what the linearised curve assumes
 
     @property
     def unit(self) -> str:
@@ -94,7 +95,10 @@ class FrfResult:
 
     def summary(self) -> dict:
         """Peaks of every curve, for people and machines."""
-        return {"machine": self.machine, "curves": [curve.summary() for curve in self.curves]}
+        notes = dict.fromkeys(note for curve in self.curves for note in curve.notes)
+        curves = [curve.summary() for curve in self.curves]
+        further = {"notes": list(notes)} if notes else {}
+        return {"machine": self.machine, "curves": curves, **further}
 
     def plot(self) -> Figure:
         """Picture of all curves."""

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import linearised_frictions
+from chatter.compile.linearised_friction import closed_backlashes, linearised_frictions
 from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
@@ -175,6 +175,7 @@ def _one_frf(
         tested,
         "torque" if is_rotation(file, section.excite) else "force",
         "rotation" if is_rotation(file, section.read or section.excite) else "displacement",
+        closed_backlashes(machine),
     )
 
 

@@ -8,7 +8,7 @@ from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import load_machine
 from chatter.engine.loop_stability import least_stable_motion
-from chatter.simulation.virtual_tests.from_file import file_move
+from chatter.simulation.virtual_tests.from_file import file_move, frfs
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.drive.backlash import Backlash
 
@@ -234,3 +234,31 @@ def test_the_gap_is_the_same_wherever_the_nut_is(tmp_path, place):
     compliance = 1.0 / NUT + place / 210e9 * (1.0 / section + twist)
     expected = GAP + 2.0 * COULOMB * compliance
     assert way["forward"] - way["backward"] == pytest.approx(expected, rel=3e-3)
+
+
+def test_linear_answers_say_that_the_gap_is_closed(tmp_path):
+    """The linearised FRF is that of the machine without backlash, and a note says so."""
+    frf = """
+[frf.motor]
+excite = "motor:Y"
+read = "motor:Y"
+by = "linearised"
+band = ["20 Hz", "400 Hz"]
+"""
+    found = [
+        frfs(file := file_of(tmp_path, screw(gap), control(), frf), file.frf) for gap in (GAP, 0.0)
+    ]
+    np.testing.assert_array_equal(*(one["motor"].harmonic.values for one in found))
+    (note,) = found[0].summary()["notes"]
+    assert "Y: nut 12 um" in note
+    assert "closed" in note
+    assert "notes" not in found[1].summary()
+
+
+def test_a_reduced_machine_keeps_the_gap(tmp_path):
+    """Modes up to 100 Hz, of which none is that of the screw, lose nothing of the lost motion."""
+    text = 'highest_frequency = "100 Hz"\n'
+    path = tmp_path / "machine.toml"
+    parts = TABLE + screw() + control() + FRICTION + SLOW_SINE
+    path.write_text(text + parts, encoding="utf-8")
+    assert lost_motion(load_machine(path)) == pytest.approx(GAP + 2.0 * COULOMB / NUT, rel=5e-3)
