@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.fitting import Fit
+from chatter.explain.fitting import Fit, Matrix, Vector
 from chatter.explain.selection.candidates import Stage
 from chatter.explain.selection.evidence import probabilities
 from chatter.explain.selection.problem import Problem
@@ -19,6 +20,8 @@ _MOST, _LEAST_PROBABILITY = 3, 0.01
 #: values drawn of each
 _DRAWS = 4
 _SEED = 5
+#: standard deviation, over a parameter's typical size, below which the data do not see it
+_SEEN = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,14 +80,9 @@ def _beside(found: Search, stage: Stage) -> Fit:
 
 def _drawn(problem: Problem, fit: Fit, names: tuple[str, ...], probability: float) -> Alternative:
     """Model with values from the normal distribution about its fit, within bounds."""
-    random = np.random.default_rng(_SEED)
     spread = np.sqrt(np.clip(np.diag(fit.covariance), 0.0, None))
-    correlation = fit.covariance / np.outer(spread + 1e-300, spread + 1e-300)
-    steps = np.zeros((0, 0))
-    if spread.size:
-        steps = random.multivariate_normal(
-            np.zeros(spread.size), correlation, _DRAWS, check_valid="ignore", method="eigh"
-        )
+    sizes = np.array([one.size for one in fit.parameters])
+    steps = _standard_steps(fit.covariance, spread, seen=spread > _SEEN * sizes)
     lower = np.array([one.lower for one in fit.parameters])
     upper = np.array([one.upper for one in fit.parameters])
     cases = []
@@ -99,3 +97,21 @@ def _drawn(problem: Problem, fit: Fit, names: tuple[str, ...], probability: floa
             # values that no case has
             continue
     return Alternative(names, probability, tuple(cases))
+
+
+def _standard_steps(covariance: Matrix, spread: Vector, seen: NDArray[np.bool_]) -> Matrix:
+    """Return steps from the normal distribution, in standard deviations; shape (draws, p).
+
+    A parameter that the data do not see has no variance in the pseudo-inverse and stays.
+    """
+    steps = np.zeros((_DRAWS, spread.size))
+    if seen.any():
+        correlation = covariance[np.ix_(seen, seen)] / np.outer(spread[seen], spread[seen])
+        steps[:, seen] = np.random.default_rng(_SEED).multivariate_normal(
+            np.zeros(correlation.shape[0]),
+            correlation,
+            _DRAWS,
+            check_valid="ignore",
+            method="eigh",
+        )
+    return steps
