@@ -90,7 +90,7 @@ def _feed_matters(case: Case) -> bool:
     given = case.process_damping
     ploughs = given is not None and given.indentation_force is not None
     uneven = case.tool.runout is not None or case.tool.radial_error is not None
-    return force_law(case, 0.0).slope_power.exponent != 0.0 or ploughs or uneven
+    return force_law(case, 0.0).slope_power.lowest_exponent != 0.0 or ploughs or uneven
 
 
 def _of_tool(case: Case) -> Iterator[Slider]:

@@ -227,10 +227,12 @@ def _rigid_cut(
         inside, phi, chip = in_cut(points, p, spindle)
         if not inside.size:
             continue
-        size = np.maximum(chip / segments.reference, 1e-9) ** segments.exponent
+        exponents = segments.exponent + segments.above_exponent
+        ratio = np.maximum(chip / segments.reference, 1e-9)
+        slopes = points.slope[p][:, None] * ratio ** exponents[:, None]
         push, chip_of = directions(points, p, phi, basis)
-        slope = np.einsum("l,lni->ni", points.slope[p], push) * size[:, None]
-        whole = slope * (chip / (1.0 + segments.exponent))[:, None]
+        slope = np.einsum("ln,lni->ni", slopes, push)
+        whole = np.einsum("ln,lni->ni", slopes * chip / (1.0 + exponents[:, None]), push)
         force[inside] += points.length[p] * (whole + np.einsum("l,lni->ni", edge, push))
         coupling[group[p], inside] += points.length[p] * slope[:, :, None] * -chip_of[:, None, :]
     return RigidCut(force, coupling, delays)

@@ -198,15 +198,20 @@ def coupling_at(
     if bend != 0.0 or abs(kappa - 0.5 * math.pi) > 1e-12:
         sk, ck = math.sin(kappa + position * bend), math.cos(kappa + position * bend)
     size = weight
-    if segments.exponent != 0.0:
-        chip = chip_at(segments, segment, position, height, s, sk, ck)
-        chip = max(chip, _LEAST_CHIP * segments.reference)
-        size *= math.exp(segments.exponent * math.log(chip / segments.reference))
     kt, kr, ka = (
         segments.cutting[segment, 0],
         segments.cutting[segment, 1],
         segments.cutting[segment, 2],
     )
+    if segments.exponent != 0.0:
+        chip = chip_at(segments, segment, position, height, s, sk, ck)
+        chip = max(chip, _LEAST_CHIP * segments.reference)
+        logarithm = math.log(chip / segments.reference)
+        size *= math.exp(segments.exponent * logarithm)
+        if segments.directional:
+            kt *= math.exp(segments.above_exponent[0] * logarithm)
+            kr *= math.exp(segments.above_exponent[1] * logarithm)
+            ka *= math.exp(segments.above_exponent[2] * logarithm)
     for coupling in range(2):
         if coupling == 1:
             if speed_factor == 0.0:

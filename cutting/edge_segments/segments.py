@@ -65,7 +65,11 @@ class EdgeSegments(NamedTuple):
     #: height on the edge above the depth of cut that it is engaged up to, m; 0 for an upright tool,
     #: whose arcs are the same at every depth. Others are segments of one depth alone
     lift: float
-    exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
+    #: of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law; where directions
+    #: differ the lowest, by which the chip that vanishes is integrated
+    exponent: float
+    above_exponent: NDArray[np.float64]  # exponent of each direction above that (3,)
+    directional: bool  # whether the three differ
     reference: float  # m
     turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
     outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
@@ -110,7 +114,7 @@ def edge_segments(
         segments, owners = segments_of_one_pass(cutter, line, band, slopes)
     turning = turning_ends(segments, owners, wave)
     power = laws[0].slope_power
-    sized = power.exponent != 0.0
+    sized = power.lowest_exponent != 0.0
     order, first_of_group = segment_groups(segments, owners, sized=sized, apart=wave and sized)
     segments = [segments[i] for i in order]
     feed = (feed_per_revolution / _REVOLUTION, 0.0)
@@ -138,7 +142,7 @@ def inclined_edge_segments(
     turning = turning_ends(segments, owners, serrated=False)
     power = laws[0].slope_power
     order, first_of_group = segment_groups(
-        segments, owners, sized=power.exponent != 0.0, apart=False
+        segments, owners, sized=power.lowest_exponent != 0.0, apart=False
     )
     segments = [segments[i] for i in order]
     highest = max((one.bottom + one.thickness for one in segments), default=top)
@@ -194,7 +198,9 @@ def _as_arrays(
         cutting=table.cutting, feed=feed[0], axial_feed=feed[1], lift=lift,
         radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
-        vanishing=np.asarray(table.vanishing, dtype=np.int64), exponent=power.exponent,
+        vanishing=np.asarray(table.vanishing, dtype=np.int64),
+        exponent=power.lowest_exponent, above_exponent=power.above_lowest,
+        directional=bool(np.any(power.above_lowest != 0.0)),
         reference=power.reference, turning=turning,
         flank=bare_flank() if flank is None else flank.linear(cutter.radius),
         first_of_group=first_of_group,

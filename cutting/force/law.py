@@ -34,8 +34,25 @@ class SlopePower(NamedTuple):
     """Slope of a law over the chip thickness: cutting (h / reference)^exponent."""
 
     cutting: NDArray[np.float64]  # N/m^2, (3,)
-    exponent: float = 0.0  # 0 for a linear law
+    exponent: float | Coefficients = 0.0  # of all, or of each of the three; 0 for a linear law
     reference: float = 1.0  # m
+
+    @property
+    def exponents(self) -> NDArray[np.float64]:
+        """Exponent of each direction, (3,)."""
+        return np.broadcast_to(np.asarray(self.exponent, dtype=np.float64), 3)
+
+    @property
+    def lowest_exponent(self) -> float:
+        """Of the direction whose slope grows most as the chip goes to zero; 0 for a linear law."""
+        acting = self.exponents[np.asarray(self.cutting) != 0.0]
+        return float(acting.min()) if acting.size else 0.0
+
+    @property
+    def above_lowest(self) -> NDArray[np.float64]:
+        """Exponent of each direction above the lowest, (3,); 0 where nothing acts."""
+        above = self.exponents - self.lowest_exponent
+        return np.where(np.asarray(self.cutting) != 0.0, above, 0.0)
 
 
 @dataclass(frozen=True)
@@ -66,7 +83,8 @@ class ForceLaw(ABC):
         """Return (3, ...) N/m^2, the derivative of `force`."""
         power = self.slope_power
         h = np.asarray(chip_thickness, dtype=np.float64)
-        return np.multiply.outer(power.cutting, (h / power.reference) ** power.exponent)
+        sizes = [(h / power.reference) ** exponent for exponent in power.exponents]
+        return np.stack([one * size for one, size in zip(power.cutting, sizes, strict=True)])
 
     def worn(self, cutting_wear: float | Sequence[float], edge_wear: Sequence[float]) -> ForceLaw:
         """Law of a worn edge.

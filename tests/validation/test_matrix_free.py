@@ -159,6 +159,9 @@ def test_flat_cones_that_hardly_touch(angle, mode, share):
         (0.8, {"mode": "slot", "radial_depth": 16e-3}),
         # a flat tip that enters and leaves all at once
         (0.8, {"corner_radius": 4e-3, "helix": (0.6,) * 2, "mode": "slot", "radial_depth": 16e-3}),
+        # radial forces that level off sooner, and later, than the tangential ones
+        (0.9, {"radial_exponent": 0.5}),
+        (0.6, {"radial_exponent": 0.9, "corner_radius": 4e-3, "helix": (0.6,) * 2}),
     ],
 )  # fmt: skip
 def test_a_size_effect_where_chips_vanish(exponent, changes):

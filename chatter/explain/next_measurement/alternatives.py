@@ -108,10 +108,6 @@ def _standard_steps(covariance: Matrix, spread: Vector, seen: NDArray[np.bool_])
     if seen.any():
         correlation = covariance[np.ix_(seen, seen)] / np.outer(spread[seen], spread[seen])
         steps[:, seen] = np.random.default_rng(_SEED).multivariate_normal(
-            np.zeros(correlation.shape[0]),
-            correlation,
-            _DRAWS,
-            check_valid="ignore",
-            method="eigh",
+            np.zeros(correlation.shape[0]), correlation, _DRAWS, check_valid="ignore", method="eigh"
         )
     return steps

@@ -75,3 +75,18 @@ def test_exponential_law_value_at_reference_and_slope():
     step = 1e-6 * h
     difference = (law.force(h + step) - law.force(h - step)) / (2 * step)
     assert law.slope(h) == pytest.approx(difference, rel=1e-7)
+
+
+def test_each_direction_of_the_exponential_law_has_its_own_exponent():
+    law = ExponentialLaw((600e6, 200e6, 50e6), 0.1e-3, (0.9, 0.5, 1.0), (10e3, 20e3, 1e3))
+    cutting = law.force(0.4e-3) - np.array([10e3, 20e3, 1e3])
+    assert cutting == pytest.approx([60e3 * 4**0.9, 20e3 * 2.0, 5e3 * 4.0])
+    h = np.geomspace(1e-6, 1e-3, 9)
+    step = 1e-6 * h
+    difference = (law.force(h + step) - law.force(h - step)) / (2 * step)
+    assert law.slope(h) == pytest.approx(difference, rel=1e-6)
+    # the slope that grows without bound is that of a direction that acts
+    assert law.slope_power.lowest_exponent == pytest.approx(-0.5)
+    silent = ExponentialLaw((600e6, 0.0, 50e6), 0.1e-3, (0.9, 0.5, 1.0))
+    assert silent.slope_power.lowest_exponent == pytest.approx(-0.1)
+    assert silent.slope_power.above_lowest == pytest.approx([0.0, 0.0, 0.1])

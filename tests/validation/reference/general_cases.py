@@ -162,6 +162,8 @@ def case_dict(cut):
     material = {"Ktc": kt, "Krc": kr, "Kac": ka}
     if cut.exponent < 1.0:
         material |= {"law": "exponential", "h0": cut.reference_chip, "exponent": cut.exponent}
+    if cut.radial_exponent is not None:
+        material["radial_exponent"] = cut.radial_exponent
     milling = {
         "mode": cut.mode,
         "spindle_speed": cut.speed,

@@ -65,6 +65,7 @@ class GeneralCut:
     edge_angle: float = 0.5 * math.pi
     offsets: tuple[float, ...] = ()
     exponent: float = 1.0
+    radial_exponent: float | None = None
     reference_chip: float = 1e-4
     process_damping: float = 0.0
     friction: float = 0.0
@@ -217,10 +218,13 @@ class _Cut:
                 s, size = self._along(low, high)
                 chip, ahead, phi, kappa = self.chips(tooth, s, spindle)
                 ratio = np.maximum(chip[which], 1e-24) / cut.reference_chip
-                slope = cut.exponent * ratio ** (cut.exponent - 1.0)
-                normal, push = _directions(phi, kappa, cut.coefficients)
+                radial = cut.exponent if cut.radial_exponent is None else cut.radial_exponent
+                push = 0.0
+                for part, p in zip(np.diag(cut.coefficients), (cut.exponent, radial, cut.exponent)):
+                    normal, unsized = _directions(phi, kappa, part)
+                    push = push + p * ratio ** (p - 1.0) * unsized
                 delays.append(np.broadcast_to(ahead[which], s.shape))
-                matrices.append(np.einsum("k,ik,jk->kij", size * slope, push, normal))
+                matrices.append(np.einsum("k,ik,jk->kij", size, push, normal))
                 c = cut.process_damping
                 _, push = _directions(phi, kappa, (cut.friction * c, c, 0.0))
                 dashpot += np.einsum("k,ik,jk->ij", size, push, normal)
