@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import scipy.stats
 
 from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
 from chatter.cutting_coefficients.in_the_cut import in_the_cut
 from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw, of_directions
 from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
 from chatter.cutting_coefficients.records_of_cuts import read_records
-from chatter.cutting_coefficients.result import Coefficients
+from chatter.cutting_coefficients.result import REFUTED, Coefficients
 from chatter.cutting_coefficients.varied_cut import with_parts
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -21,6 +22,8 @@ from chatter.explain.measurement import Measurement
 
 #: cuts of which each can be left out in turn
 _ENOUGH_CUTS = 3
+#: share of the error of one law for all directions, below which each has its own form
+_BETTER = 0.8
 
 
 def coefficients(
@@ -76,13 +79,40 @@ def coefficients(
             "law; forces along x and y of one cut are the least"
         )
     errors = [_holdout(fit, means, cases) for fit in fits]
-    kept = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
+    best = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
+    kept, error = fits[best], errors[best]
     by_direction = _fitted(of_directions(BY_DIRECTION, directions), means, cases)
     own = min(by_direction, key=lambda one: one.chi_square, default=None)
     beside = None if own is None else _holdout(own, means, cases)
-    return Coefficients(
-        records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside, apart, zeroed
-    )
+    if own is not None and _is_needed(own, beside, kept, error, len(means)):
+        kept, error = own, beside
+        fits.append(own)
+    return Coefficients(records, tuple(means), tuple(fits), kept, error, own, beside, apart, zeroed)
+
+
+def _is_needed(
+    own: FittedLaw,
+    beside: dict[str, float] | None,
+    kept: FittedLaw,
+    error: dict[str, float] | None,
+    count: int,
+) -> bool:
+    """Whether the forces ask for a form of each direction in the place of one law for all.
+
+    Where the readings contradict the law, no coefficient is below zero, and the cuts held out are
+    predicted better by a margin.
+    """
+    if not _is_refuted(kept, count) or np.any(own.values[own.law.cutting] < 0.0):
+        return False
+    if beside is None or error is None:
+        return False
+    return math.hypot(*beside.values()) < _BETTER * math.hypot(*error.values())
+
+
+def _is_refuted(fit: FittedLaw, count: int) -> bool:
+    """Whether a law leaves more than the readings scatter."""
+    freedom = count - fit.law.parameters
+    return freedom > 0 and bool(scipy.stats.chi2.sf(fit.chi_square, freedom) < REFUTED)
 
 
 def _parted(
@@ -110,10 +140,17 @@ def _fitted(
     return [fit for law in laws if (fit := fitted_law(law, means, cases)) is not None]
 
 
-def _rank(fit: FittedLaw, holdout: dict[str, float] | None, count: int) -> tuple[float, float, int]:
-    """Error of the cuts held out, where there are enough; else the criterion."""
+def _rank(
+    fit: FittedLaw, holdout: dict[str, float] | None, count: int
+) -> tuple[float, bool, float, int]:
+    """Error of the cuts held out, where there are enough; else what is not refuted, by a criterion.
+
+    Two feeds determine a line with edge forces and leave nothing to judge it by; a law without them
+    that the readings contradict is not better for being judged.
+    """
     error = math.inf if holdout is None else math.hypot(*holdout.values())
-    return error, fit.criterion(count), fit.law.parameters
+    refuted = math.isinf(error) and _is_refuted(fit, count)
+    return error, refuted, fit.criterion(count), fit.law.parameters
 
 
 def _holdout(

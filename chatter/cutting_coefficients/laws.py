@@ -25,6 +25,7 @@ from cutting.force.linear import LinearLaw
 #: chip thickness to which the coefficients of an exponential law belong, m
 REFERENCE_CHIP = 1e-4
 _DIRECTIONS = "tra"
+DIRECTION_NAMES = ("tangential", "radial", "axial")
 #: component of a direction that counts
 _SEEN = 1e-6
 #: mean forces kept
@@ -41,7 +42,7 @@ class TriedLaw:
     name : str
         As the report calls it.
     law : str
-        As [material] calls it; empty where no law of a case file is so.
+        As [material] calls it.
     keys : tuple of str
         Coefficients, in which forces are linear.
     exponents : tuple of int
@@ -73,8 +74,22 @@ class TriedLaw:
         given: dict[str, object] = {"law": self.law}
         given |= {key: float(v) for key, v in zip(self.keys, values, strict=True)}
         if len(exponents):
-            given |= {"exponent": float(exponents[0]), "h0": REFERENCE_CHIP}
+            given |= {**self.exponent_keys(exponents), "h0": REFERENCE_CHIP}
         return given
+
+    def exponent_keys(self, exponents: Sequence[float]) -> dict[str, float]:
+        """Keys of the exponents in [material]; a line is a power of one."""
+        powers = [1.0 if number < 0 else float(exponents[number]) for number in self.exponents]
+        found = {"exponent": powers[0]}
+        for key, power in zip(("radial_exponent", "axial_exponent"), powers[1:], strict=True):
+            if power != powers[0] and f"K{key[0]}c" in self.keys:
+                found[key] = power
+        return found
+
+    def directions_of(self, exponent: int) -> list[str]:
+        """Names of the directions that an exponent belongs to."""
+        named = zip(DIRECTION_NAMES, self.exponents, strict=True)
+        return [name for name, number in named if number == exponent]
 
 
 #: laws of case files, from the simplest to the richest
@@ -86,14 +101,14 @@ LAWS = (
 )
 #: laws of which every direction has its own form: a line with its edge force, or a power
 BY_DIRECTION = (
-    TriedLaw("a line for each", "", _CUTTING + _EDGE),
-    TriedLaw("line, power, line", "", (*_CUTTING, "Kte", "Kae"), (-1, 0, -1)),
-    TriedLaw("line, line, power", "", (*_CUTTING, "Kte", "Kre"), (-1, -1, 0)),
-    TriedLaw("line, power, power", "", (*_CUTTING, "Kte"), (-1, 0, 1)),
-    TriedLaw("power, line, line", "", (*_CUTTING, "Kre", "Kae"), (0, -1, -1)),
-    TriedLaw("power, power, line", "", (*_CUTTING, "Kae"), (0, 1, -1)),
-    TriedLaw("power, line, power", "", (*_CUTTING, "Kre"), (0, -1, 1)),
-    TriedLaw("a power for each", "", _CUTTING, (0, 1, 2)),
+    TriedLaw("a line for each", "linear", _CUTTING + _EDGE),
+    TriedLaw("line, power, line", "exponential", (*_CUTTING, "Kte", "Kae"), (-1, 0, -1)),
+    TriedLaw("line, line, power", "exponential", (*_CUTTING, "Kte", "Kre"), (-1, -1, 0)),
+    TriedLaw("line, power, power", "exponential", (*_CUTTING, "Kte"), (-1, 0, 1)),
+    TriedLaw("power, line, line", "exponential", (*_CUTTING, "Kre", "Kae"), (0, -1, -1)),
+    TriedLaw("power, power, line", "exponential", (*_CUTTING, "Kae"), (0, 1, -1)),
+    TriedLaw("power, line, power", "exponential", (*_CUTTING, "Kre"), (0, -1, 1)),
+    TriedLaw("a power for each", "exponential", _CUTTING, (0, 1, 2)),
 )
 
 

@@ -14,6 +14,7 @@ import tomlkit
 from chatter.compile.cutter import cutter_of
 from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.fit import FittedLaw
+from chatter.cutting_coefficients.laws import DIRECTION_NAMES
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
 from chatter.cutting_coefficients.oblique_fit import ObliqueFit, oblique_fit
 from chatter.cutting_coefficients.own_table import add_row
@@ -35,9 +36,8 @@ if TYPE_CHECKING:
 _LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
-_DIRECTIONS = ("tangential", "radial", "axial")
 #: probability that a law that holds leaves more
-_HOLDS = 0.01
+REFUTED = 0.01
 #: share of variance of a channel over the cuts that a straight line leaves, worth telling
 _LINEAR_SHARE = 0.95
 
@@ -56,7 +56,7 @@ class Coefficients:
     holdout : dict of str to float, or None
         Error of the mean forces of each cut by the law fitted to the others, over their size.
     by_direction : FittedLaw, optional
-        Law of which every direction has its own form; no law of a case file may be so.
+        Law of which every direction has its own form, a line or a power.
     holdout_by_direction : dict of str to float, or None
         Error by that law of each cut, fitted to the others.
     kept_apart : Measurement, optional
@@ -206,7 +206,7 @@ class Coefficients:
         if linear is None or len(self.means) <= linear.law.parameters:
             return None
         freedom = len(self.means) - linear.law.parameters
-        return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > _HOLDS)
+        return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > REFUTED)
 
     def summary(self) -> dict[str, Any]:
         """Content of coefficients.json."""
@@ -297,9 +297,8 @@ class Coefficients:
         ]
         if found.kept is not found.of_case:
             notes.append(
-                f"[material] has the {found.of_case.model.law.name} law, the best that a case file "
-                "can have; by_direction and waveforms in coefficients.json have the forms of each "
-                "direction"
+                f"[material] has the {found.of_case.model.law.name} law: a cutting coefficient of "
+                f"{found.kept.model.law.name} is below zero"
             )
         return notes
 
@@ -310,7 +309,7 @@ class Coefficients:
             return []
         return [
             f"the {name} force goes with the power {one.exponents[number]:.2f} of the chip"
-            for name, number in zip(_DIRECTIONS, one.law.exponents, strict=True)
+            for name, number in zip(DIRECTION_NAMES, one.law.exponents, strict=True)
             if number >= 0
         ]
 
@@ -335,7 +334,7 @@ class Coefficients:
             return None
         forms = {
             name: "line" if number < 0 else "power"
-            for name, number in zip(_DIRECTIONS, one.law.exponents, strict=True)
+            for name, number in zip(DIRECTION_NAMES, one.law.exponents, strict=True)
         }
         return {
             "forms": forms,
@@ -360,11 +359,7 @@ class Coefficients:
         deviations = fit.deviations[len(fit.law.keys) :]
         return [
             {
-                "of": [
-                    name
-                    for name, own in zip(_DIRECTIONS, fit.law.exponents, strict=True)
-                    if own == number
-                ],
+                "of": fit.law.directions_of(number),
                 "value": float(value),
                 "standard_deviation": float(deviation),
             }
@@ -407,7 +402,8 @@ class Coefficients:
                 f"{one['value']:.5g} +- {to_digits(one['standard_deviation'])} {one['unit']}"
             )
         if self.kept.exponents.size:
-            row["exponent"] = round(float(self.kept.exponents[0]), 5)
+            keys = self.kept.law.exponent_keys(self.kept.exponents)
+            row |= {key: round(power, 5) for key, power in keys.items()}
             row["h0"] = "0.1 mm"
         return row
 

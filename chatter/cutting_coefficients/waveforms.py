@@ -12,7 +12,7 @@ import tomlkit
 
 from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.fit import FittedLaw
-from chatter.cutting_coefficients.laws import REFERENCE_CHIP
+from chatter.cutting_coefficients.laws import LAWS, REFERENCE_CHIP
 from chatter.cutting_coefficients.mean_forces import force_channels
 from chatter.cutting_coefficients.prediction import PredictedCut, compared
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage, revolution_average
@@ -58,15 +58,16 @@ class Waveforms:
 
     @property
     def of_case(self) -> WaveformFit:
-        """Fit of the best law that a case file may have."""
-        return next(one for one in self.fits if one.model.law.law)
+        """Fit of the best law; of one form for all directions where that one does not cut."""
+        if _cuts(self.kept):
+            return self.kept
+        names = [law.name for law in LAWS]
+        return next(one for one in self.fits if one.model.law.name in names)
 
     @property
     def has_material(self) -> bool:
         """Whether that law cuts: no cutting coefficient is below zero."""
-        return not any(
-            one["value"] < 0.0 for one in _coefficients(self.of_case) if one["name"][-1] == "c"
-        )
+        return _cuts(self.of_case)
 
     @property
     def material(self) -> dict[str, object]:
@@ -106,11 +107,11 @@ class Waveforms:
             "coefficients": _coefficients(fit),
             "exponents": [
                 {
-                    "of": ["tangential", "radial", "axial"],
+                    "of": fit.model.law.directions_of(number),
                     "value": one["value"],
                     "standard_deviation": one["standard_deviation"],
                 }
-                for one in _of_kind(fit, names, "exponent", 1.0, "")
+                for number, one in enumerate(_of_kind(fit, names, "exponent", 1.0, ""))
             ],
         }
 
@@ -206,7 +207,9 @@ class Waveforms:
             )
         exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
         if exponent.size:
-            row |= {"exponent": round(float(exponent[0]), 5), "h0": f"{1e3 * REFERENCE_CHIP:g} mm"}
+            keys = fit.model.law.exponent_keys(exponent)
+            row |= {key: round(power, 5) for key, power in keys.items()}
+            row["h0"] = f"{1e3 * REFERENCE_CHIP:g} mm"
         return row
 
     def material_toml(self) -> str:
@@ -249,6 +252,11 @@ def _left(average: RevolutionAverage, residual: Complex) -> list[float]:
     """Share of the varying force of each channel that the fit leaves, as amplitudes."""
     left = np.linalg.norm(residual[:, 1:], axis=1)
     return [float(one) for one in left / np.linalg.norm(average.amplitude[:, 1:], axis=1)]
+
+
+def _cuts(fit: WaveformFit) -> bool:
+    """Whether no cutting coefficient is below zero."""
+    return bool(np.all(fit.coefficients[fit.model.law.cutting] >= 0.0))
 
 
 def _coefficients(fit: WaveformFit) -> list[dict[str, Any]]:

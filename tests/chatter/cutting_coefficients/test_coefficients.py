@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.cutter import force_law
 from chatter.description.case import load
 from chatter.description.errors import InputError
 from tests.command_line import chatter_command
@@ -53,12 +54,15 @@ def waveform(time, feed, arc, power=1.0, radial_power=1.0, axial_power=1.0):
     return forces
 
 
-def records(folder, arc, mode, width="", channels="", senses=(1, 1, 1), **law):
+FEEDS = (0.03, 0.06, 0.09, 0.12)  # mm a tooth
+
+
+def records(folder, arc, mode, width="", channels="", senses=(1, 1, 1), feeds=FEEDS, **law):
     random = np.random.default_rng(5)
     (folder / "case.toml").write_text(CASE.format(mode=mode, width=width), encoding="utf-8")
     runs = []
     time = np.arange(0.0, 0.4, 1e-4)
-    for feed in (0.03, 0.06, 0.09, 0.12):
+    for feed in feeds:
         forces = waveform(time, 1e-3 * feed, arc, **law) * np.array(senses)
         forces += random.standard_normal(forces.shape) * 3.0
         file = f"feed_{feed}.csv"
@@ -135,6 +139,29 @@ def test_a_radial_force_that_levels_off_is_not_forced_onto_a_line(tmp_path):
     values = {one["name"]: one["value"] for one in own["coefficients"]}
     assert values["Ktc"] == pytest.approx(1100.0, rel=0.03)
     assert any("linear law leaves more" in note for note in summary["notes"])
+
+
+def test_the_section_of_a_case_has_the_exponent_of_each_direction(tmp_path, monkeypatch):
+    monkeypatch.setitem(TRUE, "Kre", 0.0)
+    found = chatter.coefficients(records(tmp_path, **UP_CUT, radial_power=0.3))
+    assert max(found.holdout.values()) < 0.02
+    assert found.summary()["exponents"][0]["of"] == ["radial"]
+    found.save(tmp_path / "out")
+    text = (tmp_path / "case.toml").read_text() + (tmp_path / "out" / "material.toml").read_text()
+    (tmp_path / "whole.toml").write_text(text)
+    law = force_law(load(tmp_path / "whole.toml"), 0.0)
+    # what the rig did: a line along the cut, a power of 0.3 towards the axis
+    tangential, radial, _ = law.force(2e-4) / law.force(1e-4)
+    edge = TRUE["Kte"] / (TRUE["Kte"] + 1e-4 * TRUE["Ktc"])
+    assert tangential == pytest.approx(2.0 - edge, rel=0.02)
+    assert radial == pytest.approx(2.0**0.3, rel=0.05)
+
+
+def test_two_feeds_that_contradict_a_law_without_edge_forces_are_a_line_with_them(tmp_path):
+    summary = chatter.coefficients(records(tmp_path, **{**UP_CUT, "feeds": (0.05, 0.15)})).summary()
+    assert summary["law"] == "linear"
+    for key in ("Ktc", "Kte", "Krc", "Kre"):
+        assert in_si(summary)[key] == pytest.approx(TRUE[key], rel=0.03)
 
 
 def test_exponential_law_is_kept_where_it_holds(tmp_path, monkeypatch):

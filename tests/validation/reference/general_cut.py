@@ -220,7 +220,8 @@ class _Cut:
                 ratio = np.maximum(chip[which], 1e-24) / cut.reference_chip
                 radial = cut.exponent if cut.radial_exponent is None else cut.radial_exponent
                 push = 0.0
-                for part, p in zip(np.diag(cut.coefficients), (cut.exponent, radial, cut.exponent)):
+                exponents = (cut.exponent, radial, cut.exponent)
+                for part, p in zip(np.diag(cut.coefficients), exponents, strict=True):
                     normal, unsized = _directions(phi, kappa, part)
                     push = push + p * ratio ** (p - 1.0) * unsized
                 delays.append(np.broadcast_to(ahead[which], s.shape))
