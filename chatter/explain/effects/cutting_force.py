@@ -38,6 +38,11 @@ class ChipExponent(Effect):
     help = "thin chips take more force per thickness than thick ones"
     kinds = ("milling",)
 
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """Radial forces that level off sooner, or later, than the tangential ones."""
+        return (ChipExponentByDirection(),)
+
     def applies(self, measurement: Measurement) -> bool:
         """Of the linear law."""
         return measurement.case.material.law == "linear"
@@ -57,6 +62,24 @@ class ChipExponent(Effect):
             "material.h0": case.material.h0 or _H0,
             "material.exponent": float(values["exponent"]),
         }
+
+
+class ChipExponentByDirection(ChipExponent):
+    """Exponential law whose radial forces have an exponent of their own."""
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """The exponents."""
+        names = ("exponent", "radial_exponent")
+        return [free(name, 1.0, 0.03, "", lower=0.1, upper=1.0) for name in names]
+
+    def nothing(self, measurement: Measurement) -> Values:
+        """The linear law."""
+        return {"exponent": 1.0, "radial_exponent": 1.0}
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Law of the material."""
+        radial = float(values["radial_exponent"])
+        return {**super().patch(case, values), "material.radial_exponent": radial}
 
 
 class ProcessDamping(Effect):

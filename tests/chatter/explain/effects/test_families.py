@@ -9,6 +9,7 @@ import scipy.signal
 
 from chatter.compile.cutter import force_law, process_damping_of
 from chatter.description.case import loads
+from chatter.explain.effects.cutting_force import ChipExponent
 from chatter.explain.effects.dynamometer import Dynamometer, DynamometerOfAxes, DynamometerOfTwo
 from chatter.explain.effects.effect_list import candidates
 from chatter.explain.effects.missing_mode import MissingMode
@@ -88,6 +89,22 @@ def test_simple_members_come_first_and_richer_ones_once_they_are_found():
     assert len(richer.parameters(cuts())) == 4
     assert [type(one) for one in Wear().richer] == [SaturatingWear, Chipping, WearOfAll]
     assert [type(one) for one in Dynamometer().richer] == [DynamometerOfTwo]
+
+
+def test_chip_exponent_is_one_for_all_directions_or_one_for_radial_forces():
+    common = ChipExponent()
+    (own,) = common.richer
+    linear = force_law(CASE, 0.0)
+    h = np.array([2e-5, 5e-5, 2e-4])
+    unchanged = force_law(CASE.patch(own.patch(CASE, own.nothing(cuts()))), 0.0)
+    assert unchanged.force(h) == pytest.approx(linear.force(h))
+    levels_off = own.patch(CASE, {"exponent": 0.9, "radial_exponent": 0.5})
+    tangential, radial, _ = force_law(CASE.patch(levels_off), 0.0).force(4e-4)
+    # by hand: K h0 4^p, h0 = 0.1 mm; the edge force stays
+    assert tangential == pytest.approx(800e6 * 1e-4 * 4.0**0.9 + 10e3)
+    assert radial == pytest.approx(200e6 * 1e-4 * 2.0)
+    both = force_law(CASE.patch(common.patch(CASE, {"exponent": 0.5})), 0.0)
+    assert both.force(4e-4)[0] == pytest.approx(800e6 * 1e-4 * 2.0 + 10e3)
 
 
 def test_wear_comes_at_once_or_dies_away():
