@@ -11,7 +11,7 @@ from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.engagement.inclined_tool import InclinedEngagement, ToolAxis
-from cutting.tool.cutter import Cutter
+from cutting.tool.cutter import Cutter, corner_height
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -32,6 +32,11 @@ def is_inclined(case: Case) -> bool:
 def tool_axis(case: Case) -> ToolAxis:
     """Inclination of the tool axis."""
     return ToolAxis(case.cut.lead, case.cut.tilt)
+
+
+def tool_axis_angle(case: Case) -> float:
+    """Angle between the tool axis and the normal of the surface, rad."""
+    return math.acos(max(-1.0, min(1.0, float(tool_axis(case).direction[2]))))
 
 
 def inclined_engagement(
@@ -67,11 +72,16 @@ def effective_diameter(engagement: InclinedEngagement) -> float:
     cutter, top = engagement.cutter, engagement.top
     height = np.linspace(0.0, top, _HEIGHTS + 1)[1:]
     reached = np.array([cutter.radius_at(one) for one in height])
-    corner = cutter.corner_radius
-    sine = np.clip(1.0 - height / corner, 0.0, 1.0) if corner > 0.0 else np.zeros_like(height)
-    immersion = np.arccos(sine)
+    immersion = np.array([_immersion_at(cutter, one) for one in height])
     wide = _widest(engagement, height, reached, immersion)
     return 2.0 * wide
+
+
+def _immersion_at(cutter: Cutter, height: float) -> float:
+    """Axial immersion angle of the edge at a height above the tip, rad."""
+    if height < corner_height(cutter):
+        return math.acos(1.0 - height / cutter.corner_radius)
+    return cutter.edge_angle
 
 
 def _widest(
@@ -93,15 +103,12 @@ def _widest(
     if not inside:
         return 0.0
     last = inside[-1]
-    if last == height.size - 1 or radius[last] >= cutter.radius * (1.0 - 1e-12):
+    if last == height.size - 1 or radius[last] >= radius[-1] * (1.0 - 1e-12):
         return float(radius[last])
     low, high = float(height[last]), float(height[last + 1])
     for _ in range(40):
         middle = 0.5 * (low + high)
-        kappa = 0.5 * math.pi
-        if middle < cutter.corner_radius:
-            kappa = math.acos(1.0 - middle / cutter.corner_radius)
-        inside_there = cuts(middle, cutter.radius_at(middle), kappa)
+        inside_there = cuts(middle, cutter.radius_at(middle), _immersion_at(cutter, middle))
         low, high = (middle, high) if inside_there else (low, middle)
     return float(cutter.radius_at(low))
 
@@ -129,19 +136,40 @@ def _of_tool(case: Case) -> list[str]:
     tool, found = case.tool, []
     cutter = cutter_of(case)
     if cutter.edge_angle < _UPRIGHT:
-        found.append(
-            'the edge must run along the axis above its corner (kind = "ball", "bull nose" or '
-            f'"end mill"); that of kind = "{tool.kind}" stands at '
-            f"{math.degrees(cutter.edge_angle):.4g} deg"
-        )
+        found += _of_cone(case, cutter)
     if tool.serration is not None:
-        found.append("a serrated edge (tool.serration) is not computed")
+        found.append(
+            "a serrated edge (tool.serration) is not computed; leave it out, as finishing tools "
+            "have none"
+        )
     flat = cutter.radius - cutter.corner_radius > 1e-9 * cutter.radius
     if flat and case.cut.lead < 0.0:
         found.append(
             "the lead of a tool with a flat end must not be below 0 deg, not "
-            f"{math.degrees(case.cut.lead):.4g} deg: the end behind its tip would cut, which has "
-            "no edges in the model"
+            f"{math.degrees(case.cut.lead):.4g} deg: its end would rub behind the tip, without "
+            'edges in the model; lead by 0 deg or more, tilt alone, or take a ball (kind = "ball")'
+        )
+    return found
+
+
+def _of_cone(case: Case, cutter: Cutter) -> list[str]:
+    """What keeps a tapered or chamfered edge from being computed."""
+    found, cut = [], case.cut
+    if cut.radial_depth is not None:
+        found.append(
+            "the width of cut of a taper is stated by stepover, not by radial_depth: a wall "
+            "beside an inclined cone has no one distance from it"
+        )
+    if cutter.corner_radius == 0.0:
+        found.append(
+            f'a sharp cone (kind = "{case.tool.kind}") is not computed; a tapered ball end mill '
+            'is: kind = "taper" with corner_radius'
+        )
+    elif tool_axis_angle(case) >= cutter.edge_angle:
+        found.append(
+            f"the flank of the taper, at {math.degrees(cutter.edge_angle):.4g} deg, would be the "
+            f"lowest of the tool, with its axis at {math.degrees(tool_axis_angle(case)):.4g} deg; "
+            "incline it by less"
         )
     return found
 
@@ -150,26 +178,29 @@ def _of_cut(case: Case) -> list[str]:
     found = []
     if case.cut.mode not in _SIDES:
         found.append(
-            'the engagement is stated by mode = "slot", or "up" or "down" with stepover or '
-            f'radial_depth, not by mode = "{case.cut.mode}"'
+            f'mode = "{case.cut.mode}" is not computed; state a workpiece wider than the tool by '
+            'mode = "slot", a pass beside another by "up" or "down" with stepover'
         )
     simulation = case.simulation
     carved = simulation is not None and simulation.chip != "delay"
     if case.stock is not None or carved:
-        found.append('the chip is that of simulation.chip = "delay", without [stock]')
+        found.append(
+            'the chip is that of simulation.chip = "delay"; leave [stock] out, and state a '
+            "straight pass by cut.axial_depth and cut.stepover"
+        )
     if simulation is not None and simulation.has_own_path:
-        found.append("the tool moves straight on: no simulation.path or program")
+        found.append(
+            "the tool moves straight on; leave simulation.path and program out, and simulate the "
+            "passes of a path one by one, each with its lead and tilt"
+        )
     return found
 
 
 def _of_laws(case: Case) -> list[str]:
     found = []
     if case.contact is not None:
-        found.append("[contact] is not computed: its share counts depths along the tool axis")
-    damping = case.process_damping
-    if damping is not None and damping.indentation_force is not None:
         found.append(
-            "ploughing (process_damping.indentation_force) is not computed; "
-            "process_damping.coefficient is"
+            "[contact] is not computed, as its share counts depths along the tool axis; leave it "
+            "out: process damping is computed ([process_damping])"
         )
     return found

@@ -81,7 +81,7 @@ def about_steady_motion(
         frequency = float(natural[np.argmax(reach / (damping * natural**2))])
     land = vibrating_land(flank.contact_length, frequency, speed, model.cutter.radius)
     count, pressing = motion.spindle.size, flank.over_slope
-    path = motion.path(motion.period * np.arange(count) / count) @ model.basis.T
+    path = motion.path(motion.period * np.arange(count) / count) @ model.basis_on_tool.T
     return replace(
         model,
         steady_path=SteadyPath(

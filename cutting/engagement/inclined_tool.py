@@ -19,7 +19,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.tool.cutter import Cutter
+from cutting.tool.cutter import Cutter, corner_height
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class InclinedEngagement:
     Parameters
     ----------
     cutter : Cutter
-        With a straight edge along the axis above its corner, or a ball.
+        Its edge stands steeper than the axis leans: the lowest point lies on its corner or end.
     axis : ToolAxis
     axial_depth : float
         From the uncut surface down to the lowest point of the tool, m.
@@ -107,11 +107,13 @@ class InclinedEngagement:
         normal = np.stack([np.zeros_like(slope), np.sin(slope), -np.cos(slope)])
         along = across * normal[1] + up * normal[2]
         radial = np.sqrt(np.maximum(1.0 - along**2, 1e-24))
-        kappa = np.minimum(np.arctan2(radial, -along), 0.5 * math.pi)
-        corner = cutter.corner_radius
+        rising = np.arctan2(radial, -along)
+        kappa = np.minimum(rising, cutter.edge_angle)
+        corner, shank = cutter.corner_radius, _SHANK * cutter.diameter
+        on_shank = rising > cutter.edge_angle
         radius = cutter.radius - corner + corner * np.sin(kappa)
-        height = corner * (1.0 - np.cos(kappa))
-        height = np.where(along > 0.0, _SHANK * cutter.diameter, height)
+        radius = np.where(on_shank, cutter.radius_at(shank), radius)
+        height = np.where(on_shank, shank, corner * (1.0 - np.cos(kappa)))
         away = radius / radial
         y = away * (normal[1] - along * across) + height * across
         z = away * (normal[2] - along * up) + height * up
@@ -147,10 +149,18 @@ class InclinedEngagement:
 
     @property
     def top(self) -> float:
-        """Height along the axis, m, above which no edge reaches down into the cut."""
-        up = float(self.axis.direction[2])
+        """Height along the axis, m, above which no edge reaches down into the cut.
+
+        Of the cone, or cylinder, that holds the tool; its widening counts as well. Infinite where
+        the flank of a taper lies down on the work.
+        """
+        cutter, up = self.cutter, float(self.axis.direction[2])
         lean = math.sqrt(max(1.0 - up * up, 0.0))
-        return (self.floor + self.axial_depth + self.cutter.radius * lean) / up
+        widening = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
+        foot = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+        foot -= widening * corner_height(cutter)
+        rise = up - widening * lean
+        return (self.floor + self.axial_depth + foot * lean) / rise if rise > 0.0 else math.inf
 
     def position(self, height: Array, radius: Array, angle: Array) -> tuple[Array, Array]:
         """Position across the feed and along z, m, of points of edges at angles about the axis."""

@@ -84,7 +84,19 @@ def test_next_to_none_is_nearly_upright():
 @pytest.mark.parametrize(
     ("tool", "cut", "rest", "words"),
     [
-        ({"kind": "taper", "taper_angle": "5 deg"}, {}, {}, "stands at 85 deg"),
+        ({"kind": "taper", "taper_angle": "5 deg"}, {}, {}, "a tapered ball end mill is"),
+        (
+            {"kind": "taper", "taper_angle": "5 deg", "corner_radius": "5 mm"},
+            {"stepover": None, "radial_depth": "1 mm"},
+            {},
+            "stated by stepover",
+        ),
+        (
+            {"kind": "taper", "taper_angle": "20 deg", "corner_radius": "5 mm"},
+            {"lead": "71 deg"},
+            {},
+            "incline it by less",
+        ),
         ({"kind": "end mill"}, {"stepover": "4 mm", "lead": "-2 deg"}, {}, "not -2 deg"),
         (
             {"serration": {"depth": "0.1 mm", "wavelength": "2 mm"}, "kind": "end mill"},
@@ -96,16 +108,10 @@ def test_next_to_none_is_nearly_upright():
             {},
             {"mode": "face", "stepover": None, "workpiece_width": "6 mm"},
             {},
-            'not by mode = "face"',
+            'state a workpiece wider than the tool by mode = "slot"',
         ),
         ({}, {}, {"contact": {"stiffness": "1 N/um"}}, r"\[contact\] is not computed"),
         ({}, {}, {"simulation": {"chip": "dexel"}}, 'simulation.chip = "delay"'),
-        (
-            {"clearance_angle": "6 deg", "edge_radius": "10 um"},
-            {},
-            {"process_damping": {"indentation_force": "3e4 N/mm^3"}},
-            "ploughing",
-        ),
     ],
 )
 def test_what_is_not_computed_is_refused_with_the_reason(tool, cut, rest, words):

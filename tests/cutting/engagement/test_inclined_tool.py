@@ -15,6 +15,8 @@ from cutting.tool.cutter import Cutter
 BALL = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, corner_radius=5e-3)
 BULL_NOSE = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, corner_radius=1e-3)
 END_MILL = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2)
+#: a tapered ball end mill of 10 deg a side, 4 mm at the ball
+TAPERED = Cutter(4e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, 2e-3, math.radians(80.0))
 DEPTH = 0.5e-3
 
 
@@ -27,22 +29,38 @@ def inside(cutter, rotation, points, shrunk=0.0):
     """Whether points (n, 3), m from the tip, lie within the body of the tool, smaller by a bit."""
     x, y, height = (rotation.inv().apply(points)).T
     out, corner = np.hypot(x, y), cutter.corner_radius
+    if cutter.edge_angle < 0.5 * math.pi:
+        return inside_tapered_ball(cutter, out, height, shrunk)
     beyond = out - (cutter.radius - corner)
     on_corner = np.hypot(np.maximum(beyond, 0.0), height - corner) < corner - shrunk
     below = np.where(beyond > 0.0, on_corner, height > shrunk)
     return np.where(height < corner, below, out < cutter.radius - shrunk)
 
 
+def inside_tapered_ball(cutter, out, height, shrunk):
+    """Within a ball and the cone that touches it, whose apex lies below the tip of the ball."""
+    corner, half = cutter.corner_radius, 0.5 * math.pi - cutter.edge_angle
+    over_middle = height - corner
+    in_ball = np.hypot(out, over_middle) < corner - shrunk
+    # distance from the cone, seen from its apex, which lies corner/sin(half) below the middle
+    apart = out * math.cos(half) - (over_middle + corner / math.sin(half)) * math.sin(half)
+    above = over_middle > -corner * math.sin(half)
+    return in_ball | (above & (apart < -shrunk))
+
+
 def edge_point(cutter, kappa, height, angle):
     """Point of an edge, m from the tip in the axes of the tool."""
     corner = cutter.corner_radius
     out = cutter.radius - corner + corner * math.sin(kappa)
+    beyond = height - corner * (1.0 - math.cos(cutter.edge_angle))
+    if beyond > 0.0 and cutter.edge_angle < 0.5 * math.pi:
+        out += beyond / math.tan(cutter.edge_angle)
     return np.array([out * math.sin(angle), out * math.cos(angle), height])
 
 
 def lowest_point(cutter, rotation):
     """Height of the lowest of many points of the profile, m."""
-    kappa = np.linspace(0.0, 0.5 * math.pi, 4001)
+    kappa = np.linspace(0.0, cutter.edge_angle, 4001)
     out = cutter.radius - cutter.corner_radius * (1.0 - np.sin(kappa))
     height = cutter.corner_radius * (1.0 - np.cos(kappa))
     up = rotation.apply([0.0, 0.0, 1.0])[2]
@@ -76,6 +94,10 @@ def uncut(cutter, rotation, point, side, stepover, shrunk):
         (BULL_NOSE, 12, 8, "down", 2e-3),
         (BULL_NOSE, 5, -10, "up", 3e-3),
         (END_MILL, 4, 6, "up", 4e-3),
+        (TAPERED, 15, 0, "up", 0.4e-3),
+        (TAPERED, -20, 12, "down", 0.6e-3),
+        (TAPERED, 0, 62, "up", 0.8e-3),
+        (TAPERED, 8, -55, "down", 0.8e-3),
     ],
 )
 def test_arcs_against_the_bodies_that_were_swept(cutter, lead, tilt, side, stepover):
@@ -125,7 +147,7 @@ def swept_section(engaged):
                 for arc in (segments.entry, segments.exit)
             )
             kappa = segments.immersion[i] @ [1.0 - share, share]
-            out = cutter.radius - cutter.corner_radius * (1.0 - math.sin(kappa))
+            out = segments.radius[i] @ [1.0 - share, share]
             phi = begin + 0.5 * (1.0 + node) * (end - begin)
             rise = segments.feed * math.sin(kappa) * np.sin(phi)
             chip = (rise - segments.axial_feed * math.cos(kappa)) * 2.0 * math.pi / feed
@@ -154,6 +176,61 @@ def test_edges_of_a_tilted_end_mill_remove_a_trapezium():
     wide = z / math.tan(tilt) + z * math.tan(tilt)
     wanted = DEPTH * np.mean(np.minimum(wide, step))
     assert swept_section(engaged) == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("lead", "tilt", "side", "stepover"),
+    [
+        (0, 0, "slot", None),
+        (12, -8, "up", 0.4e-3),
+        (-15, 0, "slot", None),
+        (-10, 6, "down", 0.8e-3),
+    ],
+)
+def test_a_tapered_ball_that_cuts_on_its_ball_alone_is_a_ball(lead, tilt, side, stepover):
+    axis = ToolAxis(math.radians(lead), math.radians(tilt))
+    ball = Cutter(4e-3, TAPERED.helix, TAPERED.pitch, 2e-3)
+    found = [
+        swept_section(InclinedEngagement(cutter, axis, 0.2e-3, side, stepover))
+        for cutter in (TAPERED, ball)
+    ]
+    assert found[0] == pytest.approx(found[1], rel=1e-4)
+
+
+@pytest.mark.parametrize(("tilt", "side"), [(62.0, "up"), (-62.0, "down"), (30.0, "slot")])
+def test_edges_of_a_tapered_ball_remove_what_its_outline_leaves(tilt, side):
+    """Ball and straight flank in the section across the feed, by hand."""
+    depth, step, corner = 1.5e-3, 0.8e-3, 2e-3
+    axis = ToolAxis(0.0, math.radians(tilt))
+    stepover = None if side == "slot" else step
+    found = swept_section(InclinedEngagement(TAPERED, axis, depth, side, stepover))
+    z = depth * (np.arange(200000) + 0.5) / 200000
+    half = 0.5 * math.pi - TAPERED.edge_angle
+
+    def reach(leaning):
+        """Outline towards a side that the axis leans to by an angle, over the lowest point."""
+        # the flank rises from the horizontal by 90 deg - leaning - half, and touches the ball
+        rise = 0.5 * math.pi - leaning - half
+        tangent = corner * (1.0 - math.cos(rise))
+        on_ball = np.sqrt(np.maximum(corner**2 - (corner - z) ** 2, 0.0))
+        on_flank = corner * math.sin(rise) + (z - tangent) / math.tan(rise)
+        return np.where(z < tangent, on_ball, on_flank)
+
+    leaning = abs(axis.tilt)
+    # away from the lean a tapered ball leans back: its flank rises by more than upright
+    width = reach(leaning) + reach(-leaning)
+    wanted = depth * np.mean(width if side == "slot" else np.minimum(width, step))
+    assert found == pytest.approx(wanted, rel=1e-3)
+
+
+def test_no_edge_reaches_down_above_the_top():
+    """The lowest point of every height above it lies over the uncut surface."""
+    axis = ToolAxis(math.radians(-20.0), math.radians(50.0))
+    engaged = InclinedEngagement(TAPERED, axis, 1e-3, "slot")
+    up = float(axis.direction[2])
+    for height, above in [(engaged.top * 1.001, True), (engaged.top * 0.999, False)]:
+        lowest = height * up - TAPERED.radius_at(height) * math.sqrt(1.0 - up * up)
+        assert (lowest > engaged.floor + 1e-3) == above
 
 
 def arcs_of(side, tilt, stepover=0.6e-3):
