@@ -9,7 +9,8 @@ cutting_force   edge force, chip exponent, process damping
 dynamometer     resonances of the force sensor
 structure       missing mode, mode shift, contact, slide friction
 machine         friction of an axis of a machine, its joints, its gains
-axis            friction of a feed axis in its forms; offset, cogging, backlash
+axis            friction of a feed axis in its forms; offset, cogging
+backlash        backlash of a feed axis, and of a drive of a machine
 effect_list     the list: where a new effect joins
 =============== ====================================================================
 """

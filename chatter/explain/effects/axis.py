@@ -1,4 +1,4 @@
-"""Effects of a feed axis: its friction, offset, cogging, backlash."""
+"""Effects of a feed axis: its friction, offset, cogging."""
 
 from collections.abc import Mapping
 from typing import ClassVar
@@ -257,30 +257,3 @@ class Cogging(Effect):
             "period": (float(values["period"]), "m"),
             "phase": (phase, "rad"),
         }
-
-
-class Backlash(Effect):
-    """Gap of the drive, and the mass of its motor where the motion of both sides is known."""
-
-    name = "backlash"
-    label = "backlash"
-    help = "the motor crosses a gap at every reversal"
-    kinds = ("axis",)
-    section = "axis"
-    declared = "axis.backlash"
-
-    def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """The gap, and the mass of the motor."""
-        gap = free("backlash", 2e-5, 5e-6, "m", lower=0.0, upper=1e-3)
-        if not any("backlash" in run.signals for run in measurement.runs):
-            return [gap]
-        mass = measurement.case.axis.moving_mass
-        return [gap, free("motor_mass", 0.2 * mass, 0.05 * mass, "kg", lower=0.0, upper=mass)]
-
-    def nothing(self, measurement: Measurement) -> Values:
-        """No gap."""
-        return {"backlash": 0.0}
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Gaps from small to large."""
-        return [{"backlash": gap} for gap in (3e-6, 1e-5, 3e-5, 1e-4)]

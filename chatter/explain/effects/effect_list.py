@@ -6,7 +6,6 @@ Installed packages add theirs by an entry point of the group ``chatter.effects``
 from chatter.description.registry import Registry
 from chatter.explain.effects.axis import (
     Asymmetry,
-    Backlash,
     Cogging,
     CoulombFriction,
     Offset,
@@ -15,6 +14,7 @@ from chatter.explain.effects.axis import (
     Stribeck,
     WarmUp,
 )
+from chatter.explain.effects.backlash import Backlash
 from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
 from chatter.explain.effects.dynamometer import Dynamometer
 from chatter.explain.effects.effect import Effect

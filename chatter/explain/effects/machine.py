@@ -17,7 +17,7 @@ from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
 #: joints, and axes, of which each may be the one
-_MOST_JOINTS, _MOST_AXES = 24, 6
+_MOST_JOINTS, MOST_AXES = 24, 6
 #: a factor that is tried, and its bounds
 _FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
 _STARTS, _STARTS_IN_TIME = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
@@ -211,7 +211,7 @@ class AxisFriction(Effect):
     def variants(self) -> tuple[Effect, ...]:
         """Of one of the axes, at one of the parts."""
         forms = (AxisFriction, MotorFriction)
-        return tuple(form(number) for number in range(_MOST_AXES) for form in forms)
+        return tuple(form(number) for number in range(MOST_AXES) for form in forms)
 
     @property
     def richer(self) -> tuple[Effect, ...]:

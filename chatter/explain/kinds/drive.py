@@ -37,6 +37,7 @@ class Drive(Kind):
     columns = (("time",), ("command",), (*_EFFORTS, *_BEHIND))
     variables = AXIS_VARIABLES
     forms = AXIS_FORMS
+    periodic_variable = "position"
     diagnostics = (
         by_channel,
         over_variable("velocity"),
