@@ -34,6 +34,7 @@ _SMOOTHED = (
     (0.03, np.geomspace(0.6, 1.6, 9)),
     (0.01, np.linspace(0.86, 1.14, 9)),
     (0.0, np.linspace(0.96, 1.04, 9)),
+    (0.0, np.linspace(0.9925, 1.0075, 7)),
 )
 
 

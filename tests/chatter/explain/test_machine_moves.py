@@ -9,6 +9,7 @@ import chatter
 from chatter.compile.machine_response import machine_response
 from chatter.description.case import load
 from chatter.description.errors import InputError
+from chatter.explain.effects.effect_list import candidates
 from chatter.explain.measurement_file import read_measurement
 from chatter.simulation.virtual_tests.recorded_move import recorded_move
 
@@ -261,3 +262,52 @@ def test_an_axis_of_a_machine_is_a_drive(tmp_path, truth):
     (part,) = read_measurement(tmp_path).parts
     assert part.kind == "drive"
     assert [run.axis for run in part.runs] == ["Y"] * 3
+
+
+GAP = 12e-6
+NUT = 'axial_damping = "2 kN*s/m"\n'
+WITH_GAP = MACHINE.replace(NUT, NUT + f"backlash = {GAP}\n")
+#: declared a few percent off, within tolerances
+SOFTER = MACHINE.replace("80 N/um", "78 N/um")
+TOLERANCES = """
+[tolerance]
+"machine.axis.Y.drive.nut_stiffness" = 0.05
+"machine.friction.guide.coulomb" = 0.05
+"""
+
+
+def test_backlash_missing_in_moves(tmp_path):
+    """A gap of 12 um in moves alone, the nut and the friction declared a few percent off."""
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "declared").mkdir()
+    made_by = case_in(tmp_path / "truth", WITH_GAP + FRICTION)
+    folder = tmp_path / "declared"
+    case_in(folder, SOFTER + FRICTION.replace(f"coulomb = {COULOMB}", "coulomb = 61.5"))
+    set_up(folder, TOLERANCES, moves(folder, made_by, 8))
+    summary = chatter.explain(folder).summary()
+    assert summary["verdict"] == "explained"
+    (effect,) = summary["effects"]
+    assert effect["name"] == "backlash"
+    assert effect["parameters"]["backlash_Y"]["value"] == pytest.approx(GAP, rel=0.02)
+    error = summary["error"]
+    assert error["holdout_after"] < 0.85 * error["holdout_before"]
+    assert error["after"] < 1.2 * error["noise_floor"]
+
+
+def test_backlash_is_looked_for_where_flanks_move(tmp_path, truth):
+    """Of an axis that the records move, on a drive with flanks, where no gap is declared."""
+
+    def found(machine, number):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        case_in(folder, machine + FRICTION)
+        set_up(folder, moves(folder, truth))
+        measurement = read_measurement(folder).parts[0]
+        return [one for one in candidates(measurement) if one.name == "backlash"], measurement
+
+    ((effect,), measurement) = found(MACHINE, 1)
+    (parameter,) = effect.parameters(measurement)
+    assert (parameter.name, parameter.unit, parameter.lower) == ("backlash_Y", "m", 0.0)
+    patched = measurement.case.patch(effect.patch(measurement.case, {"backlash_Y": 7e-6}))
+    assert patched.machine_file().axis["Y"].drive.backlash == 7e-6
+    assert found(WITH_GAP, 2)[0] == []
