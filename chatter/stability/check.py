@@ -311,7 +311,10 @@ def check(
     frequency = np.nan
     if abs(multiplier.value) >= 1.0:
         frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
-    neglected = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, chosen))
+    neglected = (
+        *neglected_resting_friction(model),
+        *neglected_in_steady_cut(model, chosen, limit.critical_depth),
+    )
     return StabilityCheck(
         case=case,
         method=chosen.name,

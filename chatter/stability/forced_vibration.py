@@ -11,8 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from chatter.description.arrays import Array
 from chatter.description.units import rpm
-from chatter.stability.edge_force_onset import REPORTED_ONSET, edge_force_onset
+from chatter.stability.edge_force_onset import (
+    REPORTED_ONSET,
+    edge_force_onset,
+    lowest_limit_with_onset,
+    share_is_that_of_all_depths,
+)
 from chatter.stability.model import MillingModel
 from chatter.stability.neglected_effects import EDGE_FORCES, NeglectedEffect, notes_of
 from chatter.stability.stability_method import StabilityMethod
@@ -25,6 +31,8 @@ _SAME_DELAY = 1e-9
 #: share of the arc lost, or of the chip changed, from which on it is reported: the multipliers of
 #: random cuts in simulations are off by 25 % in the median beyond these, below them by 0.7 %
 _REPORTED_LOSS, _LARGE_CHANGE = 0.08, 0.6
+#: where no linear limit is known
+_NO_LIMITS = np.empty(0)
 #: slope of forced vibration, of that of the clearance face, from which on a flank that ploughs is
 #: reported, and length of its contact, in waves of chatter
 _STEEP, _LONG_LAND = 0.3, 0.04
@@ -54,15 +62,18 @@ def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedV
 
 
 def neglected_in_steady_cut(
-    model: MillingModel, method: StabilityMethod
+    model: MillingModel, method: StabilityMethod, limits: Array = _NO_LIMITS
 ) -> tuple[NeglectedEffect, ...]:
-    """Effects by which the steady cut of a case is another than linear methods take it for."""
+    """Effects by which the steady cut of a case is another than linear methods take it for.
+
+    Bounds of linear limits, m, are those of these limits where they differ with the depth.
+    """
     if not method.is_linear:
         return ()
     speed, depth = model.operating_point
     return (
         *_loss_of_contact(model, speed, depth),
-        *_edge_forces(model, depth),
+        *neglected_edge_forces(model, depth, limits),
         *_flank_beyond_the_land(model, speed, depth),
         *_left_to_time_domain(model, method),
     )
@@ -111,11 +122,19 @@ def _loss_of_contact(
     return (NeglectedEffect("loss of contact", share, 0.0, math.inf, because, note),)
 
 
-def _edge_forces(model: MillingModel, depth: float) -> tuple[NeglectedEffect, ...]:
+def neglected_edge_forces(
+    model: MillingModel, depth: float, limits: Array
+) -> tuple[NeglectedEffect, ...]:
+    """Edge forces that set in at a chip of zero: what they may take of linear limits, m.
+
+    On the edge of a cylinder, or without a limit, by their share at a depth, m.
+    """
     share = edge_force_onset(model, depth)
     if share < REPORTED_ONSET:
         return ()
     lowest = max(0.0, 1.0 - share)
+    if not share_is_that_of_all_depths(model):
+        share, lowest = _share_at_limits(model, limits, share)
     because = (
         f"edge forces that set in at a chip of zero may lower the limit by {share:.0%}"
         if lowest > 0.0
@@ -127,6 +146,20 @@ def _edge_forces(model: MillingModel, depth: float) -> tuple[NeglectedEffect, ..
         f"{because}; the time domain decides (--method time-domain)"
     )
     return (NeglectedEffect(EDGE_FORCES, share, lowest, 1.0, because, note),)
+
+
+def _share_at_limits(model: MillingModel, limits: Array, share: float) -> tuple[float, float]:
+    """Part of the limits that edge forces may take, and what they leave at least, relative.
+
+    The worst of the lowest and the highest limit, m; the share at the depth of the cut where there
+    is none, or where they leave nothing.
+    """
+    found = limits[np.isfinite(limits)]
+    if not found.size:
+        return share, max(0.0, 1.0 - share)
+    ends = sorted({float(found.min()), float(found.max())})
+    lowest = min(lowest_limit_with_onset(model, limit) / limit for limit in ends)
+    return (1.0 - lowest, lowest) if lowest > 0.0 else (max(share, 1.0), 0.0)
 
 
 def notes_on_dashpot(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:

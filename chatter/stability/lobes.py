@@ -67,7 +67,10 @@ def lobes(
         found = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
         radius = found.reshape(len(depths), len(speeds))
     removal_area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
-    neglected = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, chosen))
+    neglected = (
+        *neglected_resting_friction(model),
+        *neglected_in_steady_cut(model, chosen, limits.critical_depth),
+    )
     margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
     pockets = find_pockets(
         speeds, limits.critical_depth, max_depth, removal_area, depth_margin=margin

@@ -17,7 +17,8 @@ from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
 from chatter.io.result_files import finite_or_none
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
-from chatter.stability.edge_force_onset import REPORTED_ONSET, edge_force_onset
+from chatter.stability.edge_force_onset import REPORTED_ONSET
+from chatter.stability.forced_vibration import neglected_edge_forces
 from chatter.stability.limit_curve import LimitCurve, first_crossings
 from chatter.stability.lobes import lobes as lobes_of
 from chatter.stability.lobes import map_over_speed
@@ -225,8 +226,14 @@ def _limit_at(point: _Point) -> dict[str, Any]:
         "max_depth": float(depths[-1]),
         "notes": list(model.notes),
         "refused": [],
-        "edge_forces": edge_force_onset(model, case.cut.axial_depth) if chosen.is_linear else 0.0,
+        "edge_forces": _share_of_edge_forces(model, limit) if chosen.is_linear else 0.0,
     }
+
+
+def _share_of_edge_forces(model: MillingModel, limit: LimitCurve) -> float:
+    """Part of a limit that edge forces may take, 1 or more where they leave nothing certain."""
+    found = neglected_edge_forces(model, model.case.cut.axial_depth, limit.critical_depth)
+    return max((one.share for one in found), default=0.0)
 
 
 def _note_on_edge_forces(found: Sequence[dict[str, Any]], labels: Sequence[str]) -> tuple[str, ...]:

@@ -194,14 +194,25 @@ FINISHING = {
 }  # fmt: skip
 
 
-def test_where_no_linear_limit_bounds_the_true_one_it_is_said_with_what_computes_it(tmp_path):
-    """Edge forces of a finishing ball: an empty table "100% below the limit"."""
+def test_a_finishing_ball_has_the_bound_of_its_limit_in_every_command(tmp_path):
+    """Edge forces were weighed at the depth of the cut alone: "not certain", and no pocket."""
     words = [word for key, value in FINISHING.items() for word in ("--set", f"{key}={value}")]
+    shown = chatter_command("lobes", written(tmp_path), *words, "--out", tmp_path / "out").stdout
+    assert "pockets worth using (80% below the limit" in shown
+    found = chatter.sheet(cut(**FINISHING))
+    stated = found.cases[0].cuts[0]
+    assert stated.verdict == chatter.check(cut(**FINISHING)).verdict == "stable"
+
+
+def test_where_no_linear_limit_bounds_the_true_one_it_is_said_with_what_computes_it(tmp_path):
+    """A chip of a few um: an empty table "100% below the limit"."""
+    thin = {**FINISHING, "cut.feed_rate": "100 mm/min"}
+    words = [word for key, value in thin.items() for word in ("--set", f"{key}={value}")]
     shown = chatter_command("lobes", written(tmp_path), *words, "--out", tmp_path / "out").stdout
     assert "pockets worth using" not in shown
     assert "no pocket is named: " in shown
     assert "`chatter check --method time-domain`" in shown
-    found = chatter.sheet(cut(**FINISHING))
+    found = chatter.sheet(cut(**thin))
     assert [one.name for one in found.cases[0].cuts] == ["as stated"]
 
 

@@ -7,9 +7,13 @@ import pytest
 
 import chatter
 from chatter.description.case import Case
-from chatter.stability.edge_force_onset import edge_force_onset
+from chatter.description.progress import no_progress
+from chatter.stability.edge_force_onset import edge_force_onset, lowest_limit_with_onset
 from chatter.stability.methods.time_domain.critical_depths import growths
 from chatter.stability.model import milling_model
+from chatter.stability.registry import METHODS
+from tests.first_use.shop import cut
+from tests.first_use.test_words import FINISHING
 
 RPM = math.pi / 30.0
 KTC, KRC, KTE, KRE, FEED = 700e6, 200e6, 20e3, 15e3, 1e-4
@@ -50,6 +54,50 @@ def test_is_none_without_edge_forces_and_falls_with_the_feed():
     fed = case.patch({"cut.feed_per_tooth": 3 * FEED})
     one, three = (edge_force_onset(milling_model(each), 1e-3) for each in (case, fed))
     assert three == pytest.approx(one / 3, rel=1e-6)
+
+
+def finishing_ball(depth):
+    """A ball whose edge forces are stiffer than the thin chip of its depth of cut, m."""
+    return slot(kind="ball", diameter=10e-3).patch(
+        {"material.Kre": 5e3, "cut.axial_depth": depth, "cut.feed_per_tooth": 0.06e-3}
+    )
+
+
+def test_bound_of_a_limit_is_where_edge_and_chip_reach_it_together():
+    """Their stiffness at the bound is 1 - s^2 of the chip at the limit, with the share s there."""
+    model, limit = milling_model(finishing_ball(0.3e-3)), 3e-3
+    bound = lowest_limit_with_onset(model, limit)
+    assert 0.2 * limit < bound < 0.9 * limit
+
+    def chip(depth):
+        """Of the ball along y, relative: integral over the edge of sin(kappa)^2 d(length)."""
+        kappa = math.acos(1.0 - depth / 5e-3)
+        return 0.5 * (kappa - 0.5 * math.sin(2.0 * kappa))
+
+    share = [edge_force_onset(model, depth) for depth in (bound, limit)]
+    reached = chip(bound) * (1.0 + share[0]) / chip(limit)
+    assert reached == pytest.approx(1.0 - share[1] ** 2, rel=0.02)
+
+
+def test_bound_of_a_cylinder_is_its_share_off_the_limit():
+    case = slot().patch({"cut.feed_per_tooth": 3 * FEED})
+    model = milling_model(case)
+    share = edge_force_onset(model, 1e-3)
+    assert lowest_limit_with_onset(model, 2e-3) == pytest.approx(2e-3 * (1.0 - share), rel=2e-3)
+
+
+def test_bound_of_a_finishing_ball_is_that_of_its_limit_not_of_its_shallow_cut():
+    """Edge forces 1.15 times as stiff as the thin chip at 0.3 mm: the limit lies at 4.8 mm."""
+    case = cut(**FINISHING)
+    found = chatter.check(case, method="collocation")
+    assert found.verdict == "stable"
+    (edge,) = found.neglected
+    assert found.lowest_depth == pytest.approx(found.critical_depth * (1.0 - edge.share))
+    speed, depths = np.full(2, case.cut.spindle_speed), np.array([found.lowest_depth, 4e-3])
+    radius = METHODS["time-domain"].radius(milling_model(case), speed, depths, None, no_progress)
+    # the limit in time lies between both
+    assert radius[0] < 0.95
+    assert radius[1] > 1.0
 
 
 @pytest.mark.parametrize("edge", [True, False])
