@@ -20,6 +20,9 @@ from chatter.report.console import print_line, print_notes, print_table, print_w
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
 
+#: directions that share an exponent where there is one
+_ALL = 3
+
 
 @dataclass(frozen=True)
 class CoefficientOptions:
@@ -99,14 +102,17 @@ def _print_coefficients(found: Coefficients) -> None:
         for one in summary["coefficients"]
     ]
     rows += [
-        ["exponent", f"{one['value']:.3f}", to_digits(one["standard_deviation"]), ""]
+        [_of_exponent(one["of"]), f"{one['value']:.3f}", to_digits(one["standard_deviation"]), ""]
         for one in summary["exponents"]
     ]
     title = f"{summary['law']} law, {summary['from']} of {len(found.measurement.runs)} cuts"
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
     if summary["from"] == "mean forces" and summary["holdout_error"]:
-        worst = max(summary["holdout_error"].values())
-        print_line(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
+        for place, error in found.worst_means().items():
+            print_line(
+                f"mean forces of a cut held out, {place} the feeds of the others, are predicted "
+                f"to {error:.1%} or better"
+            )
     for name, sign in summary["signs"].items():
         print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     if found.waveforms is not None:
@@ -122,6 +128,10 @@ def _print_coefficients(found: Coefficients) -> None:
         _print_predicted(summary["not_fitted"])
     for note in summary["notes"]:
         print_notes([note])
+
+
+def _of_exponent(directions: list[str]) -> str:
+    return "exponent" if len(directions) == _ALL else f"{' and '.join(directions)} exponent"
 
 
 def _print_oblique(one: dict[str, Any]) -> None:

@@ -208,6 +208,19 @@ class Coefficients:
         freedom = len(self.means) - linear.law.parameters
         return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > REFUTED)
 
+    def worst_means(self) -> dict[str, float]:
+        """Worst error of the mean forces of a cut held out, by its feed among those of the others.
+
+        Between them, beyond them, or as they are where the feed does not vary.
+        """
+        feeds = {name: case.cut.feed_per_tooth for name, case in self._cases.items()}
+        least, most = min(feeds.values()), max(feeds.values())
+        found: dict[str, float] = {}
+        for name, error in (self.holdout or {}).items():
+            place = "at" if least == most else "between" if least < feeds[name] < most else "beyond"
+            found[place] = max(found.get(place, 0.0), error)
+        return found
+
     def summary(self) -> dict[str, Any]:
         """Content of coefficients.json."""
         answer: dict[str, Any] = {

@@ -81,7 +81,10 @@ class WaveformModel:
         """Names of the parameters."""
         found = [f"start angle of {one.run}" for one in averages]
         found += ["runout along the first tooth", "runout across it"][: self.runout_count]
-        found += [f"exponent {number}" for number in range(self.law.exponent_count)]
+        found += [
+            f"exponent, {' and '.join(self.law.directions_of(number))}"
+            for number in range(self.law.exponent_count)
+        ]
         found += ["helix"] * self.helix
         for name in self.resonant:
             found += [f"resonance of {name}", f"damping of {name}"]

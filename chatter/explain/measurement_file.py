@@ -69,7 +69,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
         # read once, not at every prediction
         declared = declared.with_machine(declared.machine_file())
     name = _kind_on(declared, name)
-    title = str(content.get("title", path.parent.name))
+    title = str(content.get("title", path.parent.resolve().name))
     whole = Measurement(name, title, path.parent, declared, ())
     tolerances = _tolerances(path, content.get("tolerance", {}), declared)
     limits = limits_of(path, content.get("next_measurement", {}), declared)

@@ -26,6 +26,10 @@ def plot_coefficients(found: Coefficients) -> Figure:
     figure.suptitle(_title(found), fontsize=11.0, x=0.01, ha="left")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
         _draw_channel(axes, found, name)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside lower center", ncols=len(names), fontsize=8.0, frameon=False
+    )
     return figure
 
 
@@ -55,7 +59,6 @@ def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
     axes.set_xlabel("feed per tooth [mm]")
     axes.set_ylabel("mean force [N]")
     axes.set_xlim(left=0.0)
-    axes.legend(fontsize=8.0)
 
 
 def _title(found: Coefficients) -> str:
@@ -71,6 +74,7 @@ def _shown(found: Coefficients):
     linear = next((one for one in found.fits if one.law.name == "linear"), None)
     if linear is not None and linear is not found.kept:
         shown.append((linear, style.GREY, "linear"))
-    if found.by_direction is not None and found.by_direction.exponents.size:
-        shown.append((found.by_direction, style.GREEN, "each direction by a form of its own"))
+    own = found.by_direction
+    if own is not None and own is not found.kept and own.exponents.size:
+        shown.append((own, style.GREEN, "each direction by a form of its own"))
     return shown
