@@ -73,6 +73,7 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
         further = [d[index] if len(d) > index else math.nan for d in limits.crossings]
         draw(np.array(further), style.BLUE, 0.8, None)
     draw(limits.critical_depth, style.BLUE, 1.6, f"limit, {METHODS[diagram.method].label}")
+    _draw_across_jumps(axes, x, limits.crossings, jumps)
     if diagram.is_over_speed and diagram.method != "zero-order":
         zero_order = diagram.zero_order.critical_depth
         axes.plot(
@@ -103,6 +104,34 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     _name_sides(axes)
     axes.set(xlim=(x[0], x[-1]), ylim=(0.0, top * 1e3), ylabel="axial depth [mm]")
     style.finish(axes)
+
+
+def _draw_across_jumps(axes: Axes, x: Array, crossings: Sequence[Array], jumps: Array) -> None:
+    """Draw limits that go on where stable intervals come or go beside them, and lone values."""
+    for right in jumps:
+        before, after = crossings[right - 1], crossings[right]
+        for low, high in zip(*_kept(before, after), strict=True):
+            axes.plot(x[right - 1 : right + 1], [1e3 * low, 1e3 * high], color=style.BLUE, lw=0.8)
+        if right + 1 in jumps:
+            # a value of its own, between jumps: no line shows its limits
+            axes.plot(
+                np.full(len(after), x[right]), np.asarray(after) * 1e3, ".", markersize=3.5,
+                color=style.BLUE,
+            )  # fmt: skip
+
+
+def _kept(before: Array, after: Array) -> tuple[Array, Array]:
+    """Limits of two neighbouring values that go on from one to the other.
+
+    Stable intervals come and go in pairs of limits that follow each other: the pair without which
+    the others are nearest. None where the numbers differ by anything but a pair, or one is zero.
+    """
+    few, many = sorted((np.asarray(before), np.asarray(after)), key=len)
+    if len(few) == 0 or len(many) - len(few) != 2:
+        return np.empty(0), np.empty(0)
+    without = [np.delete(many, [first, first + 1]) for first in range(len(many) - 1)]
+    nearest = min(without, key=lambda kept: float(np.abs(kept - few).sum()))
+    return (few, nearest) if len(before) < len(after) else (nearest, few)
 
 
 def _top(diagram: StabilityDiagram) -> float:
@@ -163,11 +192,15 @@ def _columns(x: Array) -> tuple[Array, IntegerArray, Array]:
 
 
 def _between(crossings: Sequence[Array], left: int, share: float) -> Array:
-    """Limits between two values; where intervals come or go, those of the nearer one."""
+    """Limits between two values; where intervals come or go, they are those of the nearer one."""
     before, after = crossings[left], crossings[min(left + 1, len(crossings) - 1)]
     if len(before) == len(after):
         return before + share * (after - before)
-    return before if share < 0.5 else after
+    nearer = np.asarray(before if share < 0.5 else after)
+    low, high = _kept(before, after)
+    kept = low if share < 0.5 else high
+    coming = np.setdiff1d(nearer, kept)
+    return np.sort(np.concatenate([low + share * (high - low), coming])) if low.size else nearer
 
 
 def _searched(diagram: StabilityDiagram, left: IntegerArray, share: Array) -> Array:
@@ -185,9 +218,15 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
     kept = lowest_factor(diagram.neglected_at_all_speeds)
     if kept == 1.0:
         return
-    limit = np.minimum(diagram.limits.critical_depth, top) * 1e3
+    # between values as the fill: where intervals come or go the first limit jumps
+    x, left, share = _columns(diagram.axis.values)
+    between = [_between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)]
+    first = np.array([found[0] if len(found) else math.inf for found in between])
+    refused = np.isnan(diagram.limits.critical_depth)
+    nearer = np.where(share < 0.5, left, np.minimum(left + 1, refused.size - 1))
+    limit = np.minimum(first, top) * 1e3
     axes.fill_between(
-        diagram.axis.values, kept * limit, limit, where=np.isfinite(limit), facecolor="none",
+        x, kept * limit, limit, where=~refused[nearer], facecolor="none",
         edgecolor=style.ORANGE, hatch="///", linewidth=0.0, alpha=0.55, zorder=0.8,
         label="not certain: edge forces",
     )  # fmt: skip

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
 
 import chatter
 from chatter.description.units import from_rpm
@@ -12,7 +13,7 @@ from chatter.explain.kinds.kind import Cuts
 from chatter.explain.lobes_before_after import LobesBeforeAfter
 from chatter.plots.explanation import plot_lobes_before_after
 from chatter.plots.frf import plot_frf
-from chatter.plots.stability_diagram import plot_limits
+from chatter.plots.stability_diagram import _between, _draw_across_jumps, _kept, plot_limits
 from chatter.studies.bifurcation import BifurcationDiagram, BifurcationPoint
 from chatter.studies.diagram_over_axes import lobes_over
 from tests.first_use.shop import cut
@@ -125,3 +126,26 @@ def test_the_legend_of_frfs_covers_no_curve():
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["x"]
     assert math.isfinite(legend.get_window_extent().height)
+
+
+def test_limits_go_on_where_stable_intervals_come_or_go_beside_them():
+    """A pale strip at one speed, without a curve along it: an island that opens there."""
+    before, after = np.array([0.67]), np.array([0.29, 0.51, 0.71])
+    low, high = _kept(before, after)
+    assert (low.tolist(), high.tolist()) == ([0.67], [0.71])
+    low, high = _kept(after, np.array([0.42]))
+    assert (low.tolist(), high.tolist()) == ([0.29], [0.42])
+    # in the first half of the way the island is not there yet, and the upper limit goes on
+    assert _between([before, after], 0, 0.25) == pytest.approx([0.68])
+    assert _between([before, after], 0, 0.75) == pytest.approx([0.29, 0.51, 0.70])
+    assert _kept(np.empty(0), after)[0].size == 0
+
+
+def test_a_lone_value_between_jumps_is_marked():
+    figure = Figure()
+    axes = figure.subplots()
+    x = np.array([1.0, 2.0, 3.0])
+    crossings = [np.array([0.67e-3]), np.array([0.29e-3, 0.51e-3, 0.71e-3]), np.array([0.42e-3])]
+    _draw_across_jumps(axes, x, crossings, np.array([1, 2]))
+    drawn = {tuple(map(float, np.round(line.get_ydata(), 6))) for line in axes.lines}
+    assert drawn == {(0.67, 0.71), (0.29, 0.51, 0.71), (0.29, 0.42)}
