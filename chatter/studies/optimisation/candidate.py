@@ -18,6 +18,10 @@ from chatter.studies.optimisation.speed_depth_slice import (
     evaluated_slice,
 )
 
+#: what is taken off the depth, a share of it and how often, where a limit is missed in time
+EASING, EASINGS = 0.03, 6
+#: named as what limits a cut that was made less deep so
+TIME_DOMAIN = "time domain"
 #: a limit is active if it would not be held at a depth larger by this share
 DEEPER = 0.02
 #: multiples of the depth up to which the end of stability is looked for

@@ -8,7 +8,7 @@ from typing import ClassVar
 from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text, finite_or_none
-from chatter.studies.optimisation.candidate import Candidate
+from chatter.studies.optimisation.candidate import EASING, EASINGS, TIME_DOMAIN, Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import LIMITED, Limits
 from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
@@ -93,11 +93,12 @@ class Optimum(SavedResult):
         """What the time domain says of the candidates, and how to search further."""
         point = self.candidates[0].point
         return (
-            "no candidate of the linear search holds all limits in the time domain, nor a little "
-            f"less deep, such as {1e3 * point.axial_depth:.3g} mm at "
-            f"{rpm(point.spindle_speed):.0f} rpm; `chatter check --method time-domain` computes "
-            "the limit that holds at a speed, and optimum.depths.to, "
-            f"{1e3 * self.limits.depths[-1]:.3g} mm here, keeps the search below it"
+            "no candidate of the linear search holds all limits in the time domain, nor up to "
+            f"{EASING * EASINGS:.0%} less deep, as far as is tried: such as "
+            f"{1e3 * point.axial_depth:.3g} mm at {rpm(point.spindle_speed):.0f} rpm; "
+            "`chatter check --method time-domain` computes the limit that holds at a "
+            f"speed, and optimum.depths.to, {1e3 * self.limits.depths[-1]:.3g} mm here, "
+            "keeps the search below it"
         )
 
     def summary(self) -> dict:
@@ -150,6 +151,11 @@ class Optimum(SavedResult):
             )
         limited = ", ".join(best.active) or "nothing that a deeper cut would break at once"
         lines.append(f"limited by {limited}")
+        if TIME_DOMAIN in best.active:
+            lines.append(
+                "time domain: simulations of deeper cuts miss a limit or chatter; the depth is "
+                f"taken back by {EASING:.0%} a step, {EASING * EASINGS:.0%} at the most"
+            )
         return lines
 
     def save(self, folder: str | Path) -> list[Path]:

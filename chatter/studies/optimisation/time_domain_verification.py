@@ -25,7 +25,14 @@ from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
 from chatter.simulation.verdict import with_verdict
 from chatter.stability.model import MillingModel
-from chatter.studies.optimisation.candidate import Candidate, Verification, max_usage
+from chatter.studies.optimisation.candidate import (
+    EASING,
+    EASINGS,
+    TIME_DOMAIN,
+    Candidate,
+    Verification,
+    max_usage,
+)
 from chatter.studies.optimisation.limits import LIMITED, Limits
 from chatter.studies.optimisation.operating_point import case_at
 from chatter.studies.optimisation.robustness import SIMULATED, with_probability
@@ -34,14 +41,10 @@ from dynamics.modal.modes import Mode
 
 #: a limit counts as held in the time domain up to this share above it
 TOLERANCE = 0.03
-#: what is taken off the depth, a share of it and how often, where a limit is missed in time
-_EASING, _EASINGS = 0.03, 6
 #: size of a run against the other pieces of work, and runs of a candidate that is made less deep
 _RUN_WORK, _RUNS_PER_VERIFICATION = 16, 5
 #: size of a candidate against the other pieces of work
 VERIFICATION_WORK = _RUN_WORK * _RUNS_PER_VERIFICATION
-#: named as what limits a cut that was made less deep so
-TIME_DOMAIN = "time domain"
 
 
 def confirmed(search: OptimumSearch, candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -116,9 +119,9 @@ class _Verifier:
         first = self._simulated(candidate)
         if first.verification.verified:
             return first
-        fails, holds, best = 0, _EASINGS + 1, first
-        order = (_EASINGS, 1) if first.verification.verdict == "chatter" else (1, _EASINGS)
-        while holds - fails > 1 and fails < _EASINGS:
+        fails, holds, best = 0, EASINGS + 1, first
+        order = (EASINGS, 1) if first.verification.verdict == "chatter" else (1, EASINGS)
+        while holds - fails > 1 and fails < EASINGS:
             number = next((one for one in order if fails < one < holds), (fails + holds) // 2)
             eased = self._eased(candidate, number)
             if eased is None:
@@ -130,7 +133,7 @@ class _Verifier:
     def _eased(self, candidate: Candidate, number: int) -> Candidate | None:
         """Candidate made less deep by some steps; None if it does not hold all limits in time."""
         search = self.search
-        depth = candidate.point.axial_depth * (1.0 - _EASING * number)
+        depth = candidate.point.axial_depth * (1.0 - EASING * number)
         eased: Candidate | None = search.at(candidate.point._replace(axial_depth=depth))
         if search.drawn is not None:
             eased = with_probability(search.model, search.limits, eased, search.drawn)
