@@ -145,6 +145,37 @@ def test_tools_of_other_shapes_by_hand():
     assert f"power {chip + edge:.1f} W mean" in PAGE
 
 
+def test_further_power_and_angles_by_hand():
+    """Chip 1900 MPa times the removal rate, edges 25 N/mm times their length and speed."""
+
+    def power(depth, area_of_edge, teeth, turns, rate):
+        edge = teeth * turns / 60.0 * 25.0 * area_of_edge / 1e3
+        return 1900.0 * depth * rate / 60.0 / 1e3, edge
+
+    def turns(speed, diameter):
+        return speed * 1e3 / (math.pi * diameter)
+
+    inch = turns(200 * 0.3048, 12.7)
+    slot = power(0.508 * 12.7, 6.35 * math.pi * 0.508, 3, inch, 15 * 25.4)
+    of_saw = turns(60.0, 80.0)
+    feed = of_saw * 18 * 0.03
+    saw = power(3.0 * 5.0, 40.0 * 3.0 * math.acos(1.0 - 5.0 / 40.0), 18, of_saw, feed)
+    fly = power(0.5 * 100.0, 62.5 * 0.5 * 2.0 * math.asin(0.8), 1, turns(60.0, 125.0), 100.0)
+    chamfer = power(1.5, 1.5 * math.sqrt(2.0) * 0.5 * math.pi, 4, turns(30.0, 2.0), 380.0)
+    for chip, edge in (slot, saw, fly, chamfer):
+        assert f"{chip:.2f} W" in PAGE
+        assert f"{edge:.2f} W" in PAGE
+        assert f"power {chip + edge:.4g} W mean" in PAGE
+    assert f"feed rate {feed:.4g} mm/min" in PAGE
+    ends = [math.degrees(math.acos(y / 31.5)) for y in (20.0, -30.0)]
+    assert f"{ends[0]:.4g} to {ends[1]:.4g} deg" in PAGE
+    assert f"{180.0 - math.degrees(math.acos(1.0 - 0.16)):.4g} to 180 deg" in PAGE
+    lead, tilt = math.radians(15.0), math.radians(10.0)
+    leaning = math.acos(math.cos(lead) * math.cos(tilt))
+    wide = 6.0 * math.sin(leaning + math.acos(1.0 - 0.1))
+    assert f"{wide:.4g} mm, {math.pi * wide * turns(60.0, 6.0) / 1e3:.4g} m/min there" in PAGE
+
+
 def test_limits_by_hand():
     stiffness, damping = 12e3, 0.03  # N/mm
     ratio = np.linspace(0.9, 1.3, 400001)
@@ -163,5 +194,5 @@ def test_limits_by_hand():
 
 
 def test_there_are_jobs():
-    assert len(JOBS) >= 43
-    assert PAGE.count("\n## ") >= 30
+    assert len(JOBS) >= 50
+    assert PAGE.count("\n## ") >= 37
