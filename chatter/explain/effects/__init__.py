@@ -1,16 +1,17 @@
 """Effects that a model may lack, each a patch of the case.
 
-=============== ====================================================================
-module          effects
-=============== ====================================================================
-effect          `Effect`: name, label, help, patch, parameters, where it applies
-tool            runout, pitch, wear
-cutting_force   edge force, chip exponent, process damping
-dynamometer     resonances of the force sensor
-structure       missing mode, mode shift, contact, slide friction
-machine         friction of an axis of a machine, its joints, its gains
-axis            friction of a feed axis in its forms; offset, cogging
-backlash        backlash of a feed axis, and of a drive of a machine
-effect_list     the list: where a new effect joins
-=============== ====================================================================
+================ ====================================================================
+module           effects
+================ ====================================================================
+effect           `Effect`: name, label, help, patch, parameters, where it applies
+tool             runout, pitch, wear
+cutting_force    edge force, chip exponent, process damping
+dynamometer      resonances of the force sensor
+structure        missing mode, mode shift, contact, slide friction
+machine          joints, gains and frictions of a machine that are not as declared
+machine_friction friction of an axis of a machine
+axis             friction of a feed axis in its forms; offset, cogging
+backlash         backlash of a feed axis, and of a drive of a machine
+effect_list      the list: where a new effect joins
+================ ====================================================================
 """

@@ -18,7 +18,13 @@ from chatter.explain.effects.backlash import Backlash
 from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
 from chatter.explain.effects.dynamometer import Dynamometer
 from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.machine import AxisFriction, ControlDelay, ControlGain, JointStiffness
+from chatter.explain.effects.machine import (
+    ControlDelay,
+    ControlGain,
+    DeclaredFriction,
+    JointStiffness,
+)
+from chatter.explain.effects.machine_friction import AxisFriction
 from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.effects.structure import Contact, ModeShift, SlideFriction
 from chatter.explain.effects.tool import Pitch, Runout, Wear
@@ -50,6 +56,7 @@ EFFECTS: Registry[Effect] = Registry(
         Backlash(),
         WarmUp(),
         AxisFriction(),
+        DeclaredFriction(),
         JointStiffness(),
         ControlGain(),
         ControlDelay(),

@@ -1,18 +1,16 @@
-"""Effects of a machine: friction of an axis, joints and gains that are not as declared."""
+"""Effects of a machine: joints, gains and frictions that are not as declared."""
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from chatter.description.case import MACHINE_PATH, Case
-from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.drive import DriveSection
 from chatter.description.machine.machine_file import MachineFile
-from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.effects.effect import Effect, Patch, Values, free
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
@@ -21,12 +19,13 @@ _MOST_JOINTS, MOST_AXES = 24, 6
 #: a factor that is tried, and its bounds
 _FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
 _STARTS, _STARTS_IN_TIME = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
-#: friction that is tried at two parts, over that of typical ones: what holds at rest is sharp
-_SHARES, _VISCOUS_SHARE = (0.05, 0.3, 1.0, 2.0, 3.5, 6.0, 12.0), 0.05
 #: keys of drives and loops that say how stiff they are
 _STIFFNESS, _GAINS = "stiffness", ("position.gain", "velocity.proportional_gain")
 #: keys of loops that delay what they pass on
 _LAGS = ("current.time_constant", "velocity.integral_time")
+#: keys of friction laws that say how much they resist, and factors that are tried
+_RESISTING = ("coulomb", "static", "logarithmic", "viscous", "low_speed_viscous")
+_STARTS_OF_FRICTION = (0.02, 0.1, 0.3, 0.6, 1.0, 1.5, 3.0)
 
 
 class Joint(NamedTuple):
@@ -76,7 +75,21 @@ def _of_loops(file: MachineFile, keys: Sequence[str]) -> list[Joint]:
     ]
 
 
-class _Factor(Effect):
+def resistances(file: MachineFile) -> list[Joint]:
+    """Forces of each friction that is declared."""
+    found = []
+    for name, law in file.friction.items():
+        values = {
+            f"friction.{name}.{key}": value
+            for key in _RESISTING
+            if isinstance(value := getattr(law, key, None), float) and value > 0.0
+        }
+        if values:
+            found.append(Joint(name, values))
+    return found
+
+
+class Factor(Effect):
     """Values of the machine that are a factor off what is declared."""
 
     kinds = ("frf", "milling", "drive")
@@ -131,7 +144,7 @@ class _Factor(Effect):
         return {MACHINE_PATH + path: float(factor) * v for path, v in one.values.items()}
 
 
-class JointStiffness(_Factor):
+class JointStiffness(Factor):
     """A guide, bearing, nut or belt that is softer or stiffer than declared."""
 
     name = "joint_stiffness"
@@ -143,7 +156,25 @@ class JointStiffness(_Factor):
         return joints(file)
 
 
-class ControlGain(_Factor):
+class DeclaredFriction(Factor):
+    """A friction that is stronger or weaker than declared, or not there."""
+
+    name = "declared_friction"
+    label = "strength of a friction"
+    help = "a friction that is declared of the machine is stronger or weaker, or next to none"
+    kinds = ("drive",)
+
+    def listed(self, file: MachineFile) -> Sequence[Joint]:
+        """Frictions that are declared."""
+        return resistances(file)
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """From next to none to three times."""
+        (one,) = self.parameters(measurement)
+        return [{one.name: factor} for factor in _STARTS_OF_FRICTION]
+
+
+class ControlGain(Factor):
     """A gain of a control loop that is not as declared."""
 
     name = "control_gain"
@@ -155,7 +186,7 @@ class ControlGain(_Factor):
         return gains(file)
 
 
-class ControlDelay(_Factor):
+class ControlDelay(Factor):
     """A time constant of a control loop that is not as declared."""
 
     name = "control_delay"
@@ -166,172 +197,3 @@ class ControlDelay(_Factor):
     def listed(self, file: MachineFile) -> Sequence[Joint]:
         """Loops of all axes."""
         return lags(file)
-
-
-class RubbingPart(NamedTuple):
-    """Where an axis rubs: key of its target, word in names, units and typical sizes."""
-
-    target: str  # key of the friction law's `on`
-    law: str  # name of the friction law in the machine, before the axis
-    named: str  # before the axis, in names of parameters
-    force: str  # unit of friction
-    damping: str  # unit of viscous friction
-    stiffness: str  # unit of friction over displacement
-    sizes: dict[str, float]  # typical friction, by key of the law
-    hysteresis_slope: float  # friction is built up within some tenths of a mm or of a mrad
-
-    def unit(self, key: str) -> str:
-        """Unit of a quantity of the friction law."""
-        return self.force if key == "coulomb" else self.damping
-
-
-GUIDE = RubbingPart(
-    "axis", "guide_", "", "N", "N*s/m", "N/m",
-    {"coulomb": 20.0, "viscous": 200.0}, 1e4,
-)  # fmt: skip
-MOTOR = RubbingPart(
-    "motor", "motor_", "motor_", "N*m", "N*m*s/rad", "N*m/rad",
-    {"coulomb": 0.02, "viscous": 2e-3}, 1e4,
-)  # fmt: skip
-
-
-class AxisFriction(Effect):
-    """Friction of the guides, of the motor, or of both, of an axis that has none declared there."""
-
-    name = "axis_friction"
-    label = "friction of an axis"
-    help = "guides or motor of an axis of the machine rub: a spring at rest, a damper in motion"
-    kinds = ("frf", "milling", "drive")
-    parts: tuple[RubbingPart, ...] = (GUIDE,)
-
-    def __init__(self, number: int = 0) -> None:
-        self.number = number
-
-    @property
-    def variants(self) -> tuple[Effect, ...]:
-        """Of one of the axes, at one of the parts."""
-        forms = (AxisFriction, MotorFriction)
-        return tuple(form(number) for number in range(MOST_AXES) for form in forms)
-
-    @property
-    def richer(self) -> tuple[Effect, ...]:
-        """At both parts of the same axis."""
-        return (FrictionOfGuideAndMotor(self),)
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Of a machine with so many axes without friction there."""
-        case = measurement.case
-        return case.on_machine and self.number < len(self._axes(case.machine_file()))
-
-    def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Quantities of the friction laws, named by part and axis."""
-        axis = self.axis(measurement)
-        return [
-            free(f"{key}_{part.named}{axis}", 0.0, part.sizes[key], part.unit(key), lower=0.0)
-            for part in self.parts
-            for key in part.sizes
-        ]
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Little, and as much as of a sliding guide."""
-        sizes = {one.name: one.size for one in self.parameters(measurement)}
-        return [{name: share * size for name, size in sizes.items()} for share in (0.05, 1.0, 5.0)]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Friction with hysteresis at every part; none where it is nothing."""
-        del case
-        given: Patch = {}
-        for part, axis, own in self._laws(values):
-            if own["coulomb"] > 0.0:
-                given[f"{MACHINE_PATH}friction.{part.law}{axis}"] = {
-                    "law": "tanh-hysteresis",
-                    "on": {part.target: axis},
-                    **own,
-                    "hysteresis_slope": part.hysteresis_slope,
-                }
-        return given
-
-    def reported(self, values: Values) -> Reported:
-        """Friction, and its stiffness before it slides."""
-        told: Reported = {}
-        for part, axis, own in self._laws(values):
-            for key, value in own.items():
-                told[f"{key}_{part.named}{axis}"] = (value, part.unit(key))
-            stiffness = own["coulomb"] * part.hysteresis_slope
-            told[f"presliding_stiffness_{part.named}{axis}"] = (stiffness, part.stiffness)
-        return told
-
-    def axis(self, measurement: Measurement) -> str:
-        """Axis that rubs."""
-        return self._axes(measurement.case.machine_file())[self.number]
-
-    def _axes(self, file: MachineFile) -> list[str]:
-        """Axes under control that no friction is declared on, at any of the parts."""
-        rubbed = {
-            getattr(one.on, part.target) for one in file.friction.values() for part in self.parts
-        }
-        return [
-            name
-            for name, axis in file.axis.items()
-            if axis.control is not None and name not in rubbed and self._has_parts(axis)
-        ]
-
-    def _has_parts(self, axis: AxisSection) -> bool:
-        """Whether the motor of an axis turns, where that is one of the parts."""
-        turns = axis.drive is not None and not axis.drive.motor_is_linear
-        return MOTOR not in self.parts or turns
-
-    def _laws(self, values: Values) -> Iterator[tuple[RubbingPart, str, dict[str, float]]]:
-        """Place, axis, and quantities of the law there."""
-        for part in self.parts:
-            begins = f"coulomb_{part.named}"
-            axis = next(key for key in values if key.startswith(begins)).removeprefix(begins)
-            own = {key: float(values[f"{key}_{part.named}{axis}"]) for key in part.sizes}
-            yield part, axis, own
-
-
-class MotorFriction(AxisFriction):
-    """Friction of the bearings and the nut of an axis, as its motor feels it."""
-
-    parts = (MOTOR,)
-
-
-class FrictionOfGuideAndMotor(AxisFriction):
-    """Friction of guides and motor of an axis of which one was found to rub."""
-
-    parts = (GUIDE, MOTOR)
-
-    def __init__(self, found: AxisFriction) -> None:
-        super().__init__(found.number)
-        self._found = found
-
-    @property
-    def richer(self) -> tuple[Effect, ...]:
-        """None."""
-        return ()
-
-    @property
-    def mistaken_for(self) -> tuple[str, ...]:
-        """Between two parts that hold lies what is compliant."""
-        return (JointStiffness.name, ControlGain.name, ControlDelay.name)
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Of an axis that has no friction declared at either part."""
-        case = measurement.case
-        return case.on_machine and self.axis(measurement) in self._axes(case.machine_file())
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Every Coulomb friction of the one part with every one of the other."""
-        axis = self.axis(measurement)
-        return [
-            {
-                f"{key}_{part.named}{axis}": size * (share if key == "coulomb" else _VISCOUS_SHARE)
-                for part, share in zip(self.parts, shares, strict=True)
-                for key, size in part.sizes.items()
-            }
-            for shares in itertools.product(_SHARES, repeat=len(self.parts))
-        ]
-
-    def axis(self, measurement: Measurement) -> str:
-        """Axis of the friction that was found."""
-        return self._found.axis(measurement)

@@ -134,9 +134,9 @@ def test_missing_friction_of_an_axis_is_named(folder, missing, named, coulomb):
     summary = chatter.explain(made, declared).summary()
     assert [effect["name"] for effect in summary["effects"]] == ["axis_friction"]
     found = summary["effects"][0]["parameters"]
-    # what shows at rest is the friction times the slope of its hysteresis
+    # what shows at rest is twice the friction times the slope of its hysteresis
     told = found[f"presliding_stiffness_{named}"]["value"]
-    assert told == pytest.approx(coulomb * 1.15e4, rel=0.1)
+    assert told == pytest.approx(2.0 * coulomb * 1.15e4, rel=0.1)
 
 
 def test_a_slower_current_loop_is_another_machine(folder):

@@ -311,3 +311,50 @@ def test_backlash_is_looked_for_where_flanks_move(tmp_path, truth):
     patched = measurement.case.patch(effect.patch(measurement.case, {"backlash_Y": 7e-6}))
     assert patched.machine_file().axis["Y"].drive.backlash == 7e-6
     assert found(WITH_GAP, 2)[0] == []
+
+
+def test_a_friction_that_is_weaker_than_declared(tmp_path):
+    """All forces of the friction of the guides are 0.7 of what the file says."""
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "declared").mkdir()
+    weaker = FRICTION.replace(f"{COULOMB}", f"{0.7 * COULOMB}").replace(
+        f"{VISCOUS}", f"{0.7 * VISCOUS}"
+    )
+    made_by = case_in(tmp_path / "truth", MACHINE + weaker)
+    folder = tmp_path / "declared"
+    case_in(folder, MACHINE + FRICTION)
+    set_up(folder, moves(folder, made_by, 2))
+    summary = chatter.explain(folder).summary()
+    assert summary["verdict"] == "explained"
+    (effect,) = summary["effects"]
+    assert effect["name"] == "declared_friction"
+    assert effect["parameters"]["guide"]["value"] == pytest.approx(0.7, rel=0.02)
+
+
+def test_a_friction_that_is_higher_at_low_speed(tmp_path):
+    """Not declared: 60 N, and 120 N at the onset of sliding, which falls over 15 mm/s."""
+    lugre = """
+[friction.guide]
+law = "lugre"
+on = { axis = "Y" }
+coulomb = 60.0
+static = 120.0
+stribeck_velocity = 0.015
+viscous = 400.0
+bristle_stiffness = 1.2e6
+"""
+    (tmp_path / "truth").mkdir()
+    (tmp_path / "declared").mkdir()
+    made_by = case_in(tmp_path / "truth", MACHINE + lugre)
+    folder = tmp_path / "declared"
+    case_in(folder, MACHINE)
+    set_up(folder, moves(folder, made_by, 6))
+    summary = chatter.explain(folder).summary()
+    assert summary["verdict"] == "explained"
+    (effect,) = summary["effects"]
+    assert effect["name"] == "axis_friction"
+    found = {name: one["value"] for name, one in effect["parameters"].items()}
+    assert found["coulomb_Y"] == pytest.approx(60.0, rel=0.05)
+    assert found["onset_Y"] == pytest.approx(60.0, rel=0.05)
+    assert found["stribeck_velocity_Y"] == pytest.approx(0.015, rel=0.1)
+    assert found["viscous_Y"] == pytest.approx(400.0, rel=0.15)
