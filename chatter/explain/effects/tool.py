@@ -10,7 +10,7 @@ from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
-#: directions within a pitch, and offset, m, from which a runout is sought where teeth are not told
+#: directions within a pitch where teeth are not known, and offset, m, from which runout is sought
 _DIRECTIONS, _FIRST_OFFSET = 3, 5e-6
 #: the same as a share of the feed per tooth: where one tooth hardly cuts is another minimum
 _OFFSET_OF_FEED = 0.25
@@ -34,12 +34,15 @@ class Runout(Effect):
         return [free(key, 0.0, 3e-6, "m", lower=-most, upper=most) for key in ("across", "along")]
 
     def starts(self, measurement: Measurement) -> list[Values]:
-        """None; where it is not known which tooth is where, some in directions within a pitch.
+        """None and little all round; where no tooth is known, in directions within a pitch.
 
-        Every run then chooses its tooth, and a start without runout leaves that to chance.
+        What a tooth cuts has a kink where there is no runout. Where no tooth is known, every run
+        chooses its own, and a start without runout leaves that to chance.
         """
         if all(getattr(run.record, "knows_tooth", True) for run in measurement.runs):
-            return [{}]
+            around = [(_FIRST_OFFSET, 0.0), (0.0, _FIRST_OFFSET)]
+            little = [(sign * a, sign * b) for sign in (1.0, -1.0) for a, b in around]
+            return [{}, *({"across": across, "along": along} for across, along in little)]
         pitch = 2.0 * math.pi / measurement.case.tool.teeth
         angles = pitch * np.arange(_DIRECTIONS) / _DIRECTIONS
         feeds = [run.of(measurement.case).cut.feed_per_tooth for run in measurement.runs]

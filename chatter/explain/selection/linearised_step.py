@@ -17,6 +17,8 @@ from chatter.explain.selection.problem import Problem
 
 #: finite difference and fractions of a linearised step, in units of a parameter's size
 _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
+#: share of the promised fall below which a step that holds the declared values is tried beside
+_KEPT_PROMISE = 0.5
 #: weight of a linearised step on parameters without a prior, which keeps it finite
 WEAK_PRIOR = 1e-3
 
@@ -199,21 +201,42 @@ def _one_step(
     own = _columns(trial, added, values, residual, runs)
     jacobian = np.column_stack([now.jacobian, own])
     weight = _weights(now, added)
-    normal = jacobian.T @ jacobian + np.diag(weight)
-    step = -np.linalg.solve(normal, jacobian.T @ residual)
     offset = residual - now.residuals
-    left = float(residual @ residual) - _promised(jacobian, weight, residual)
-    promised = now.cost - left
+    begin = float(residual @ residual)
+    fall = _promised(jacobian, weight, residual)
     everything = [*now.parameters, *added]
+
+    def along(weights: NDArray[np.float64]) -> tuple[float, dict[str, float]]:
+        step = -np.linalg.solve(jacobian.T @ jacobian + np.diag(weights), jacobian.T @ residual)
+        return _shortened(trial, everything, values, step, begin, runs)
+
+    cost, moved = along(weight)
+    if begin - cost < _KEPT_PROMISE * fall:
+        # beside a large misfit the declared values are drawn far from where the model is a line
+        held = weight.copy()
+        held[: len(now.parameters)] = max(1.0, begin / residual.size)
+        cost, moved = min((cost, moved), along(held), key=lambda entry: entry[0])
+    promised = now.cost - begin + fall
+    return LinearisedStep(cost, promised, moved, now.jacobian, own, values, offset, added)
+
+
+def _shortened(
+    trial: Problem,
+    parameters: Sequence[Parameter],
+    values: dict[str, float],
+    step: NDArray[np.float64],
+    begin: float,
+    runs: Sequence[Run],
+) -> tuple[float, dict[str, float]]:
+    """Sum of squares and values after the longest part of a step that lowers it; none: as begun."""
     for fraction in _FRACTIONS:
         moved = {
             one.name: float(
                 np.clip(values[one.name] + fraction * change * one.size, one.lower, one.upper)
             )
-            for one, change in zip(everything, step, strict=True)
+            for one, change in zip(parameters, step, strict=True)
         }
         cost = trial.cost(moved, runs)
-        if cost < residual @ residual:
-            return LinearisedStep(cost, promised, moved, now.jacobian, own, values, offset, added)
-    cost = float(residual @ residual)
-    return LinearisedStep(cost, promised, values, now.jacobian, own, values, offset, added)
+        if cost < begin:
+            return cost, moved
+    return begin, values

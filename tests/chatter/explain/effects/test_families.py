@@ -166,8 +166,12 @@ def test_runout_is_sought_from_little_and_from_where_one_tooth_hardly_cuts():
     angles = [np.degrees(np.arctan2(one["along"], one["across"])) for one in starts]
     pitch = 360.0 / CASE.tool.teeth
     assert angles == pytest.approx([0.0, pitch / 3.0, 2.0 * pitch / 3.0] * 2)
-    # where the tooth is known no start is needed but none at all
-    assert Runout().starts(cuts()) == [{}]
+    # where the tooth is known: nothing, and little in the four directions of the tool
+    nothing, *around = Runout().starts(cuts())
+    assert nothing == {}
+    assert {(one["across"], one["along"]) for one in around} == {
+        (5e-6, 0.0), (-5e-6, 0.0), (0.0, 5e-6), (0.0, -5e-6),
+    }  # fmt: skip
 
 
 def test_two_teeth_show_the_difference_of_their_radii_alone():
