@@ -88,6 +88,14 @@ class Effect(ABC):
         """Start values to try, each by name; those of the parameters where none is named."""
         return ({},)
 
+    def sizable_starts(self, measurement: Measurement) -> Sequence[Values]:
+        """Start values of an effect that is not small; none by default.
+
+        Tried where a fit has drawn declared values out of their tolerances: they may stand for the
+        effect, and are put back.
+        """
+        return ()
+
     def proposed(
         self, measurement: Measurement, predicted: Mapping[str, Signals]
     ) -> Sequence[Values]:

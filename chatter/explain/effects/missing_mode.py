@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 #: natural frequencies tried, from and to which share of the known ones, and damping ratios
 _TRIED, _LOWEST, _HIGHEST = 80, 0.3, 2.5
 _DAMPING = (0.01, 0.03, 0.08)
+#: compliance of a mode that is not small, as a share of that of the most compliant known one
+_SIZABLE = 0.5
 #: modes that are proposed, further apart than a share of their frequency
 _PROPOSED, _APART = 2, 0.15
 #: samples of a run that are looked at: a run begins at rest, and so does every mode
@@ -73,6 +75,12 @@ class MissingMode(Effect):
             for angle in (0.0, 0.5 * math.pi)
             for frequency in frequencies
         ]
+
+    def sizable_starts(self, measurement: Measurement) -> list[Values]:
+        """The same, half as compliant as the most compliant mode."""
+        modes = measurement.case.structure.mode
+        most = max(1.0 / stiffness_of(one.frequency, one.modal_mass) for one in modes)
+        return [{**one, "compliance": _SIZABLE * most} for one in self.starts(measurement)]
 
     def proposed(
         self, measurement: Measurement, predicted: Mapping[str, Signals]

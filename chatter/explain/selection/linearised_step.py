@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import FOLLOWED_STARTS, SCREENED_STARTS
+from chatter.explain.criteria import FOLLOWED_STARTS, OUT_OF_TOLERANCE, SCREENED_STARTS
 from chatter.explain.effects.effect import Effect, Values
 from chatter.explain.fitting import WORKERS, Fit, Parameter
 from chatter.explain.measurement import Run
@@ -19,6 +19,8 @@ from chatter.explain.selection.problem import Problem
 _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
 #: share of the promised fall below which a step that holds the declared values is tried beside
 _KEPT_PROMISE = 0.5
+#: starts with the declared values put back of which a linearised step is made
+_SIZABLE_STARTS = 3
 #: weight of a linearised step on parameters without a prior, which keeps it finite
 WEAK_PRIOR = 1e-3
 
@@ -91,14 +93,14 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
 
     measured = problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds)
     predicted = problem.predicted(now.by_name, runs)
-    begins = [values_at(start) for start in effect.starts(problem.measured_by(effect))]
-    if len(begins) > SCREENED_STARTS:
-        amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
-        secants = _Secants(trial, now, runs, amounts)
-        with ThreadPoolExecutor(WORKERS) as pool:
-            costs = list(pool.map(secants.cost, begins))
-        ranked = sorted(range(len(begins)), key=lambda index: costs[index])
-        begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
+    own = problem.measured_by(effect)
+    amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
+    secants = _Secants(trial, now, runs, amounts)
+    begins = secants.best([values_at(start) for start in effect.starts(own)], SCREENED_STARTS)
+    if any(abs(pull) > OUT_OF_TOLERANCE for pull in now.pulls.values()):
+        declared = {one.name: one.start for one in now.parameters if one.prior}
+        sizable = [values_at(start) | declared for start in effect.sizable_starts(own)]
+        begins += secants.best(sizable, _SIZABLE_STARTS)
     begins += [values_at(start) for start in effect.proposed(measured, predicted)]
     return _best_of(trial, added, now, runs, begins or [values_at({})])
 
@@ -116,6 +118,15 @@ class _Secants:
         # what all starts have in common
         self.normal = now.jacobian.T @ now.jacobian + np.eye(len(now.parameters))
         self.gradient = now.jacobian.T @ now.residuals
+
+    def best(self, begins: list[dict[str, float]], most: int) -> list[dict[str, float]]:
+        """Starts on whose lines the sum of squares falls most, all where there are few."""
+        if len(begins) <= most:
+            return begins
+        with ThreadPoolExecutor(WORKERS) as pool:
+            costs = list(pool.map(self.cost, begins))
+        ranked = sorted(range(len(begins)), key=lambda index: costs[index])
+        return [begins[index] for index in ranked[:most]]
 
     def cost(self, values: Mapping[str, float]) -> float:
         """Least sum of squares on the line through a start.

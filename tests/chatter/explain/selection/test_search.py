@@ -6,6 +6,7 @@ import pytest
 from chatter.description.case import loads
 from chatter.explain.effects.axis import Asymmetry, Offset, QuadraticDrag
 from chatter.explain.effects.effect import free
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -72,9 +73,9 @@ def unlike_shapes(random):
     return random.standard_normal((3, SAMPLES))
 
 
-def problem_of(measurement):
+def problem_of(measurement, kind=None):
     """Problem of a measurement, and its split into fitted and holdout runs."""
-    kind = Sums()
+    kind = kind or Sums()
     noise = {run.name: kind.known_noise(run) for run in measurement.runs}
     return Problem(measurement, Predictions(kind), noise), split_runs(measurement)
 
@@ -177,6 +178,45 @@ def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
     step = linearised(problem, Chosen(), now, split.fitted)
     assert step.values["chosen.which"] == pytest.approx(7.0, abs=0.1)
     assert step.values["chosen.amount"] == pytest.approx(3.0, abs=0.05)
+
+
+class BesideADeclaredMass(Sums):
+    """The offset acts by a mass as declared alone; one that is drawn away stands for it."""
+
+    def nuisance_parameters(self, measurement):
+        return [Parameter("axis.moving_mass", 20.0, 0.2, 1.0, 100.0, True, "kg")]
+
+    def predict(self, case, run):
+        away = case.axis.moving_mass - 20.0
+        acts = case.axis.offset * (abs(away) < 0.1)
+        return {"force": run.record[0] + away * run.record[1] + acts * run.record[2]}
+
+
+class Sizable(Offset):
+    """An offset that is sought from a size as well."""
+
+    def applies(self, measurement):
+        return True
+
+    def sizable_starts(self, measurement):
+        return [{"offset": 2.0}]
+
+
+@pytest.mark.parametrize(("effect", "found"), [(Offset(), 0.0), (Sizable(), 3.0)])
+def test_declared_values_that_stand_for_an_effect_are_put_back(effect, found):
+    """Mass and offset have shapes that are nine tenths alike; the offset of 3 draws the mass."""
+
+    def alike(random):
+        one, other = random.standard_normal((2, SAMPLES))
+        return one, 0.9 * one + np.sqrt(1.0 - 0.9**2) * other, np.zeros(SAMPLES)
+
+    problem, split = problem_of(measured(alike, (0.0, 3.0, 0.0)), BesideADeclaredMass())
+    now = problem.fit(split.fitted, {})
+    assert now.by_name["axis.moving_mass"] == pytest.approx(22.7, abs=0.1)
+    step = linearised(problem, effect, now, split.fitted)
+    assert step.values["offset.offset"] == pytest.approx(found, abs=0.05)
+    if found:
+        assert step.values["axis.moving_mass"] == pytest.approx(20.0, abs=0.05)
 
 
 def test_a_stage_from_beside_an_effect_that_was_dropped_is_made_anew():
