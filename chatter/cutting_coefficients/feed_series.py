@@ -22,6 +22,14 @@ def differ_by_feed_alone(cases: Sequence[Case]) -> bool:
     )
 
 
+def position_among(feed: float, feeds: Sequence[float]) -> str:
+    """Where a feed lies among feeds, its own with them: at, between or beyond the others."""
+    least, most = min(feeds), max(feeds)
+    if least == most:
+        return "at"
+    return "between" if least < feed < most else "beyond"
+
+
 def at_feed(feed: float, feeds: Sequence[float], values: ArrayLike) -> np.ndarray:
     """Values (n, ...) of n cuts at another feed: lines between the feeds, the last ones beyond.
 

@@ -17,6 +17,8 @@ from chatter.description.case import Case
 
 #: exponents that a chip of metal has
 _EXPONENTS, _FIRST_EXPONENT = (0.05, 1.0), 0.7
+#: probability that a law that holds leaves more
+_HOLDS = 0.01
 #: change of an exponent for a difference
 _STEP = 1e-4
 #: singular value, over the largest, below which the cuts do not determine the coefficients
@@ -42,6 +44,13 @@ class FittedLaw:
             return math.inf
         scatter = count * math.log(max(self.chi_square, 1e-12) / count)
         return scatter + 2.0 * k + 2.0 * k * (k + 1) / (count - k - 1)
+
+    def leaves_more_than_scatter(self, count: int) -> bool | None:
+        """Whether the law leaves more of so many readings than they scatter; None: none is free."""
+        freedom = count - self.law.parameters
+        if freedom <= 0:
+            return None
+        return bool(scipy.stats.chi2.sf(self.chi_square, freedom) <= _HOLDS)
 
     def mean_forces_of(self, means: Sequence[MeanForce], case: Case) -> Array:
         """Mean forces (m,) of readings of one cut, N."""

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import scipy.stats
 
 from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
 from chatter.cutting_coefficients.in_the_cut import in_the_cut
 from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw, of_directions
 from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
 from chatter.cutting_coefficients.records_of_cuts import read_records
-from chatter.cutting_coefficients.result import REFUTED, Coefficients
+from chatter.cutting_coefficients.result import Coefficients
 from chatter.cutting_coefficients.varied_cut import with_parts
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -102,17 +101,11 @@ def _is_needed(
     Where the readings contradict the law, no coefficient is below zero, and the cuts held out are
     predicted better by a margin.
     """
-    if not _is_refuted(kept, count) or np.any(own.values[own.law.cutting] < 0.0):
+    if not kept.leaves_more_than_scatter(count) or np.any(own.values[own.law.cutting] < 0.0):
         return False
     if beside is None or error is None:
         return False
     return math.hypot(*beside.values()) < _BETTER * math.hypot(*error.values())
-
-
-def _is_refuted(fit: FittedLaw, count: int) -> bool:
-    """Whether a law leaves more than the readings scatter."""
-    freedom = count - fit.law.parameters
-    return freedom > 0 and bool(scipy.stats.chi2.sf(fit.chi_square, freedom) < REFUTED)
 
 
 def _parted(
@@ -149,7 +142,7 @@ def _rank(
     that the readings contradict is not better for being judged.
     """
     error = math.inf if holdout is None else math.hypot(*holdout.values())
-    refuted = math.isinf(error) and _is_refuted(fit, count)
+    refuted = math.isinf(error) and bool(fit.leaves_more_than_scatter(count))
     return error, refuted, fit.criterion(count), fit.law.parameters
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy
 import tomlkit
 
 from chatter.compile.cutter import cutter_of
 from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import DIRECTION_NAMES
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 _LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
-#: probability that a law that holds leaves more
-REFUTED = 0.01
 #: share of variance of a channel over the cuts that a straight line leaves, worth telling
 _LINEAR_SHARE = 0.95
 
@@ -203,10 +201,8 @@ class Coefficients:
     @property
     def _line_fits_means(self) -> bool | None:
         linear = next((one for one in self.fits if one.law.name == "linear"), None)
-        if linear is None or len(self.means) <= linear.law.parameters:
-            return None
-        freedom = len(self.means) - linear.law.parameters
-        return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > REFUTED)
+        more = None if linear is None else linear.leaves_more_than_scatter(len(self.means))
+        return None if more is None else not more
 
     def worst_means(self) -> dict[str, float]:
         """Worst error of the mean forces of a cut held out, by its feed among those of the others.
@@ -214,10 +210,9 @@ class Coefficients:
         Between them, beyond them, or as they are where the feed does not vary.
         """
         feeds = {name: case.cut.feed_per_tooth for name, case in self._cases.items()}
-        least, most = min(feeds.values()), max(feeds.values())
         found: dict[str, float] = {}
         for name, error in (self.holdout or {}).items():
-            place = "at" if least == most else "between" if least < feeds[name] < most else "beyond"
+            place = position_among(feeds[name], list(feeds.values()))
             found[place] = max(found.get(place, 0.0), error)
         return found
 

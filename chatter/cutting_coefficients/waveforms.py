@@ -11,6 +11,7 @@ import numpy as np
 import tomlkit
 
 from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import LAWS, REFERENCE_CHIP
 from chatter.cutting_coefficients.mean_forces import force_channels
@@ -130,7 +131,7 @@ class Waveforms:
         feeds = [one.average.case.cut.feed_per_tooth for one in self.holdout]
         found: dict[str, float] = {}
         for one, feed in zip(self.holdout, feeds, strict=True):
-            place = "between" if min(feeds) < feed < max(feeds) else "beyond"
+            place = position_among(feed, feeds)
             for channel in one.errors().values():
                 ratio = channel["peak_to_peak_predicted_N"] / channel["peak_to_peak_N"]
                 found[place] = max(found.get(place, 0.0), abs(ratio - 1.0))

@@ -92,18 +92,24 @@ class AxisFriction(Effect):
         return [{name: share * size for name, size in sizes.items()} for share in (0.05, 1.0, 5.0)]
 
     def patch(self, case: Case, values: Values) -> Patch:
-        """Friction with hysteresis at every part; none where it is nothing."""
+        """Friction at every part; none where it is nothing."""
         del case
-        given: Patch = {}
-        for part, axis, own in self._laws(values):
-            if own["coulomb"] > 0.0:
-                given[f"{MACHINE_PATH}friction.{part.law}{axis}"] = {
-                    "law": "tanh-hysteresis",
-                    "on": {part.target: axis},
-                    **own,
-                    "hysteresis_slope": part.hysteresis_slope,
-                }
-        return given
+        return {
+            f"{MACHINE_PATH}friction.{part.law}{axis}": {
+                "on": {part.target: axis},
+                **own,
+                **self._law_keys(part, axis, own, values),
+            }
+            for part, axis, own in self._laws(values)
+            if own["coulomb"] > 0.0
+        }
+
+    def _law_keys(
+        self, part: RubbingPart, axis: str, own: Values, values: Values
+    ) -> dict[str, object]:
+        """Law and the keys that the quantities do not give: friction with hysteresis."""
+        del axis, own, values
+        return {"law": "tanh-hysteresis", "hysteresis_slope": part.hysteresis_slope}
 
     def reported(self, values: Values) -> Reported:
         """Friction, and its stiffness before it slides."""
@@ -240,21 +246,16 @@ class StribeckFriction(AxisFriction):
             for share, onset, fall in itertools.product(_SLIDING, _ONSETS, _FALLS)
         ]
 
-    def patch(self, case: Case, values: Values) -> Patch:
-        """LuGre friction; none where it is nothing."""
-        del case
-        given: Patch = {}
-        for part, axis, own in self._laws(values):
-            if own["coulomb"] > 0.0:
-                given[f"{MACHINE_PATH}friction.{part.law}{axis}"] = {
-                    "law": "lugre",
-                    "on": {part.target: axis},
-                    **own,
-                    "static": own["coulomb"] + float(values[f"onset_{part.named}{axis}"]),
-                    "stribeck_velocity": float(values[f"stribeck_velocity_{part.named}{axis}"]),
-                    "bristle_stiffness": _stiffness(part, own["coulomb"]),
-                }
-        return given
+    def _law_keys(
+        self, part: RubbingPart, axis: str, own: Values, values: Values
+    ) -> dict[str, object]:
+        """LuGre law with its Stribeck curve."""
+        return {
+            "law": "lugre",
+            "static": own["coulomb"] + float(values[f"onset_{part.named}{axis}"]),
+            "stribeck_velocity": float(values[f"stribeck_velocity_{part.named}{axis}"]),
+            "bristle_stiffness": _stiffness(part, own["coulomb"]),
+        }
 
     def reported(self, values: Values) -> Reported:
         """Friction with its stiffness, and its Stribeck curve."""

@@ -141,8 +141,8 @@ def test_power_is_the_work_of_the_tangential_force():
     assert np.mean(run.power[:-1]) == pytest.approx(wanted, rel=1e-5)
 
 
-def exponential(p, h0):
-    return {**MATERIAL, "law": "exponential", "exponent": p, "h0": h0}
+def exponential(p, h0, **others):
+    return {**MATERIAL, "law": "exponential", "exponent": p, "h0": h0, **others}
 
 
 def by_quadrature(theta, per_length, pieces, teeth, radius_at, arc_of, lag, top):
@@ -171,19 +171,27 @@ def by_quadrature(theta, per_length, pieces, teeth, radius_at, arc_of, lag, top)
     return total
 
 
-@pytest.mark.parametrize(("p", "h0"), [(0.7, 1e-4), (0.9, 1e-3)])
-def test_exponential_law_against_quadrature(p, h0):
+@pytest.mark.parametrize(
+    ("p", "h0", "others"),
+    [
+        (0.7, 1e-4, {}),
+        (0.9, 1e-3, {}),
+        (0.9, 1e-4, {"radial_exponent": 0.5, "axial_exponent": 1.0}),
+    ],
+)
+def test_exponential_law_against_quadrature(p, h0, others):
     helix, depth, teeth = math.radians(40.0), 6e-3, 2
     run = simulate(
-        case("up", teeth, helix, depth, material=exponential(p, h0), slices=400, steps=48)
+        case("up", teeth, helix, depth, material=exponential(p, h0, **others), slices=400, steps=48)
     )
     picked = np.arange(1, 48, 9)
 
     def law(phi, z):
         s, c = math.sin(phi), math.cos(phi)
-        size = h0 * (FEED * s / h0) ** p
-        ft, fr = KTC * size + KTE, KRC * size + KRE
-        return -ft * c - fr * s, ft * s - fr * c, KAC * size + KAE
+        powers = (p, others.get("radial_exponent", p), others.get("axial_exponent", p))
+        tangential, radial, axial = (h0 * (FEED * s / h0) ** power for power in powers)
+        ft, fr = KTC * tangential + KTE, KRC * radial + KRE
+        return -ft * c - fr * s, ft * s - fr * c, KAC * axial + KAE
 
     lag = math.tan(helix) / RADIUS
     wanted = by_quadrature(
