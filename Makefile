@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test nightly lowest manual distributions benchmarks clean
+.PHONY: demo test nightly campaigns lowest manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
 	$(BIN)/chatter examples flexible-workpiece --run --open --out demo-output
@@ -15,11 +15,17 @@ test: $(VENV)/.installed-dev
 	$(BIN)/mypy
 	$(BIN)/pytest -n auto --dist loadfile
 
-# what takes hours: properties and damaged files in numbers, commands killed at random moments
+# every test, the nightly ones among them; what was found goes into docs/validation.md
 nightly: $(VENV)/.installed-dev
+	mkdir -p build/nightly
+	$(BIN)/pytest -n auto --dist loadfile -m 'not browser and not ansys' --junitxml build/nightly/tests.xml; \
+		found=$$?; $(BIN)/python -m tests.nightly_record build/nightly/tests.xml && exit $$found
+
+# what takes hours: properties and damaged files in numbers, commands killed at random moments
+campaigns: $(VENV)/.installed-dev
 	CHATTER_PROPERTIES=2500 CHATTER_FUZZING=500 $(BIN)/pytest tests/validation/test_properties.py tests/benchmarks/test_fuzzing.py
-	$(BIN)/python -m benchmarks.fuzzing build/nightly/fuzzing --count 100000 --seed $$(date +%Y%m%d)
-	$(BIN)/python -m benchmarks.killed_commands build/nightly/killed --kills 30
+	$(BIN)/python -m benchmarks.fuzzing build/campaigns/fuzzing --count 100000 --seed $$(date +%Y%m%d)
+	$(BIN)/python -m benchmarks.killed_commands build/campaigns/killed --kills 30
 
 # tests with the oldest libraries of pyproject.toml, which warn of each other, by the oldest Python: make lowest OLDEST=python3.10
 OLDEST ?= $(PYTHON)

@@ -44,6 +44,7 @@ def test_chatter_sets_in_when_the_paper_says(example, entering):
     assert frequency == pytest.approx(50.0, rel=0.05)
 
 
+@pytest.mark.nightly
 def test_voxels_and_dexels_agree_on_a_machine(example, case, entering):
     """Before chatter the forces agree as far as the grids allow; the onset within two turns."""
     dexel = example.simulated(case, {"friction": {}}, "dexel")["friction"]

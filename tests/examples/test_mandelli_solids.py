@@ -97,6 +97,7 @@ def test_the_shipped_saddle_gives_way_as_its_full_mesh(file):
     assert answers[1] == pytest.approx(answers[0], rel=1e-6)
 
 
+@pytest.mark.nightly
 def test_a_slot_with_friction_keeps_its_energy():
     case = chatter.load(EXAMPLE / "slot-upwards.toml").patch({"simulation.duration": "0.5 s"})
     result = chatter.simulate(case)

@@ -285,6 +285,7 @@ def test_example_draws_its_picture(machine, tmp_path):
 FOLDER = EXAMPLES / "solid-crossbeam"
 
 
+@pytest.mark.nightly
 def test_slot_along_the_beam_keeps_its_energy():
     """The head travels 30 mm along the rails in the cut, under control, friction and chips."""
     case = chatter.load(FOLDER / "case.toml")

@@ -14,7 +14,18 @@ TUTORIALS = sorted(
 )
 
 
-@pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
+#: half a minute and more each; what they show has tests of its own
+NIGHTLY = {"writing-your-own-law", "closing-the-loop-on-real-tests", "operators-sheet"}
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=[pytest.mark.nightly] if path.stem in NIGHTLY else [])
+        for path in TUTORIALS
+    ],
+    ids=lambda path: path.stem,
+)
 def test_a_tutorial_runs_as_it_stands(path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code_blocks.run_page(path)
@@ -24,6 +35,10 @@ def test_a_tutorial_runs_as_it_stands(path, tmp_path, monkeypatch):
 def test_pictures_of_a_tutorial_are_there(path):
     for name in code_blocks.pictures(path.read_text(encoding="utf-8")):
         assert (ROOT / "docs" / "pictures" / "tutorials" / name).exists(), name
+
+
+def test_nightly_tutorials_are_there():
+    assert {path.stem for path in TUTORIALS} >= NIGHTLY
 
 
 def test_a_block_that_prints_something_else_fails(tmp_path, monkeypatch):

@@ -105,20 +105,32 @@ def test_lobes_and_check_take_the_method(run, folder):
     assert checked["critical_depth_mm"] == pytest.approx(0.8 * plain["critical_depth_mm"])
 
 
+NAMES = ("case.toml", "exponential.toml")
+
+
+def limits_of(run, folder, name, method):
+    shown = json.loads(run(folder, "check", name, "--method", method, "--json"))
+    return shown["critical_depth_mm"]
+
+
 def test_the_force_law_is_that_of_the_package(run, folder):
     """The root law is the exponential law of exponent 0.5, in the limits and in the cut."""
     text = CASE.replace(ROOT_LAW, EXPONENTIAL_LAW)
     assert text != CASE
     (folder / "exponential.toml").write_text(text)
-    method = ("--method", "collocation")
-    found, expected = (
-        json.loads(run(folder, "check", name, *method, "--json"))["critical_depth_mm"]
-        for name in ("case.toml", "exponential.toml")
-    )
-    assert found == pytest.approx(expected, rel=1e-6)
+    limits = [limits_of(run, folder, name, "zero-order") for name in NAMES]
+    assert limits[0] == pytest.approx(limits[1], rel=1e-6)
+
+
+@pytest.mark.nightly
+def test_the_force_law_is_in_every_kind_of_kernel(run, folder):
+    """Elements and steps of time compile it anew."""
+    (folder / "exponential.toml").write_text(CASE.replace(ROOT_LAW, EXPONENTIAL_LAW))
+    limits = [limits_of(run, folder, name, "collocation") for name in NAMES]
+    assert limits[0] == pytest.approx(limits[1], rel=1e-6)
     found, expected = (
         json.loads(run(folder, "simulate", name, "--out", name[:-5], "--json"))["peak_force_N"]
-        for name in ("case.toml", "exponential.toml")
+        for name in NAMES
     )
     assert found == pytest.approx(expected, rel=1e-6)
 

@@ -33,6 +33,8 @@ class StoredCase:
         Of the call.
     rtol : float or None
         In place of the tolerance of the call, where rounding grows in the run.
+    nightly : bool
+        Whether only a nightly run takes it.
     """
 
     name: str
@@ -42,6 +44,7 @@ class StoredCase:
     machine_patch: Mapping[str, Any]
     arguments: Mapping[str, Any]
     rtol: float | None
+    nightly: bool
 
 
 def _path_of(file: str) -> Path:
@@ -67,5 +70,6 @@ def stored_cases() -> dict[str, StoredCase]:
                 table.get("set_machine", {}),
                 arguments,
                 rtol,
+                call in table.get("nightly", ()),
             )
     return found

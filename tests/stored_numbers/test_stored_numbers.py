@@ -10,7 +10,13 @@ CASES = stored_cases()
 STORED = store.read()
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.nightly] if case.nightly else [])
+        for name, case in CASES.items()
+    ],
+)
 def test_the_numbers_are_those_stored(name):
     found = store.differences(STORED.get(name, {}), readings(CASES[name]))
     assert not found, "\n".join([name, *found])

@@ -59,8 +59,15 @@ def test_the_example_of_the_docs_is_told_and_its_numbers_are_those():
     assert simulated.radius == pytest.approx(0.838, abs=0.01)
     assert len(told(found.notes)) == 1
     assert "14%" in told(found.notes)[0]
-    short = case.patch({"lobes": {"speeds": {"from": "10900 rpm", "to": "11100 rpm", "count": 3}}})
-    assert told(chatter.lobes(short).notes) == told(found.notes)
+    assert not told(notes_on_steady_cut(model, METHODS["time-domain"]))
+
+
+@pytest.mark.nightly
+def test_lobes_of_linear_methods_tell_it_and_those_in_time_do_not():
+    short = cut_of().patch(
+        {"lobes": {"speeds": {"from": "10900 rpm", "to": "11100 rpm", "count": 3}}}
+    )
+    assert told(chatter.lobes(short).notes) == told(chatter.check(cut_of()).notes)
     assert not told(chatter.lobes(short, "time-domain").notes)
 
 

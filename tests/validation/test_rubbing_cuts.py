@@ -79,8 +79,18 @@ def is_forced(case):
     return swings[0] < 1.5 * swings[1]
 
 
-@pytest.mark.parametrize("law", list(LAWS))
-@pytest.mark.parametrize(("force", "shares"), [(2.0, (0.7, 1.4, 3.0)), (20.0, (1.4, 3.0))])
+NIGHTLY = [pytest.mark.nightly]
+WEAK, STRONG = (2.0, (0.7, 1.4, 3.0)), (20.0, (1.4, 3.0))
+
+
+# every law rubs weakly or strongly in every run, and both in the nightly one
+@pytest.mark.parametrize(
+    ("law", "force", "shares"),
+    [
+        *(pytest.param(law, *WEAK, marks=NIGHTLY if law == "lugre" else []) for law in LAWS),
+        *(pytest.param(law, *STRONG, marks=NIGHTLY if law == "tanh" else []) for law in LAWS),
+    ],
+)
 def test_verdict_is_that_of_the_run(limit, law, force, shares):
     for share in shares:
         case = rubbing_case(law, force, share * limit)

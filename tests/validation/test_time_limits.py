@@ -38,7 +38,17 @@ TEN_SPEEDS = {
 }
 
 
-@pytest.mark.parametrize("name", list(TEN_SPEEDS))
+#: one mode and two, up- and down-milling are left
+NIGHTLY = {"one mode, up-milling", "two modes, tenth immersion"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.nightly] if name in NIGHTLY else [])
+        for name in TEN_SPEEDS
+    ],
+)
 def test_limits_at_ten_speeds_within_two_percent(name):
     case = cut_of(*TEN_SPEEDS[name])
     found = chatter.lobes(case, method="time-domain").limits

@@ -108,7 +108,7 @@ def off_at(ratio, shape):
     return found.error, abs(at[1]) / ((at[2] - at[0]) / 0.04)
 
 
-@pytest.mark.parametrize("shape", ["triangle", "sine"])
+@pytest.mark.parametrize("shape", [pytest.param("triangle", marks=pytest.mark.nightly), "sine"])
 def test_limits_are_those_of_a_period_that_fits(shape):
     """Next to ten tool periods a variation, growth is not that of just ten of them.
 

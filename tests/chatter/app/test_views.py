@@ -207,6 +207,7 @@ def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
     again.end()
 
 
+@pytest.mark.nightly
 def test_a_study_is_cancelled_and_goes_on(workbench, tmp_path):
     text = (tmp_path / "case.toml").read_text().replace('"600 MPa"', '"600 +- 30 MPa"')
     workbench.session.set_text(text)

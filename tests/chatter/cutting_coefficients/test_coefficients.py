@@ -111,6 +111,7 @@ def test_what_is_written_is_a_section_of_a_case(tmp_path):
     assert 0.0 < case.deviations()["material.Ktc"] < 0.05 * TRUE["Ktc"]
 
 
+@pytest.mark.nightly
 def test_unknown_senses_of_a_dynamometer_are_found(tmp_path):
     channels = "".join(
         f'[channels.F{axis}]\nquantity = "force"\non = "workpiece"\nsign = "unknown"\n'

@@ -48,7 +48,9 @@ def assert_true(found, share=0.04):
         assert value == pytest.approx(TRUE[key], rel=share), key
 
 
-@pytest.mark.parametrize("column", ["feed_per_tooth [mm]", "feed_rate [mm/min]"])
+@pytest.mark.parametrize(
+    "column", [pytest.param("feed_per_tooth [mm]", marks=pytest.mark.nightly), "feed_rate [mm/min]"]
+)
 def test_steps_of_the_feed_in_one_file_are_a_series(tmp_path, case, column):
     feeds = np.repeat([0.03, 0.06, 0.09, 0.12], RATE // 2)
     told = feeds if "tooth" in column else feeds * 3 * 60.0 * SPEED
@@ -64,6 +66,7 @@ def test_steps_of_the_feed_in_one_file_are_a_series(tmp_path, case, column):
     }
 
 
+@pytest.mark.nightly
 def test_a_ramp_of_the_feed_is_divided(tmp_path, case):
     feeds = np.linspace(0.02, 0.14, 2 * RATE)
     file = write(tmp_path / "ramp.csv", forces_of(feeds), **{"feed_per_tooth [mm]": feeds})

@@ -183,9 +183,9 @@ def test_a_folder_of_another_kind_is_refused():
 @pytest.mark.parametrize(
     ("name", "law", "inertia", "viscous", "coulomb"),
     [
-        ("set-111", "coulomb", 169.266, 761.023, 70.9227),
+        pytest.param("set-111", "coulomb", 169.266, 761.023, 70.9227, marks=pytest.mark.nightly),
         ("set-112", "lugre", 137.952, 1085.79, 109.646),
-        ("set-113", "coulomb", 247.579, 1000.15, 159.886),
+        pytest.param("set-113", "coulomb", 247.579, 1000.15, 159.886, marks=pytest.mark.nightly),
     ],
 )
 def test_moves_of_another_simulation(name, law, inertia, viscous, coulomb):

@@ -125,6 +125,7 @@ def named(summary):
     return {one["name"]: one["parameters"] for one in summary["effects"]}
 
 
+@pytest.mark.nightly
 def test_a_shift_of_one_mode_by_the_square_of_the_speed(tmp_path):
     speed = 7000.0 * TURN / 60.0
     summary = explained(plant(square_slope=-0.08 / speed**2, square_mode=1), tmp_path)
@@ -136,6 +137,7 @@ def test_a_shift_of_one_mode_by_the_square_of_the_speed(tmp_path):
     assert numbers["change"]["value"] == pytest.approx(-0.08, rel=0.05)
 
 
+@pytest.mark.nightly
 def test_a_missing_mode_and_runout_together(tmp_path):
     changes = with_mode(1150.0, 0.03, 0.3, [1.0, 0.0])
     summary = explained(plant(runout_offset=9e-6, runout_angle=1.1, **changes), tmp_path)
@@ -169,6 +171,7 @@ def test_wear_of_every_coefficient(tmp_path):
     assert found["wear"]["cutting"]["value"] == pytest.approx(0.012, rel=0.1)
 
 
+@pytest.mark.nightly
 def test_runout_of_two_teeth_is_what_can_be_seen_of_it(tmp_path):
     """Two teeth show the difference of their radii alone: the offset along them."""
     offset, angle = 10e-6, 0.9

@@ -67,6 +67,7 @@ def test_contact_joined_to_frfs_is_that_assembled_in_the_machine():
     assert np.abs(joined - free).max() > 0.2 * np.abs(free).max()
 
 
+@pytest.mark.nightly
 def test_missing_contact_is_found(folder):
     truth = load(folder / "case.toml").patch(CONTACT)
     found = chatter.explain(measured(folder, truth, "contact", ("y",), ("moving", "in_cut")))
@@ -81,12 +82,14 @@ def test_missing_contact_is_found(folder):
     assert summary["error"]["after"] < 0.2 * summary["error"]["before"]
 
 
+@pytest.mark.nightly
 def test_nothing_is_missing_where_nothing_is(folder):
     case = load(folder / "case.toml")
     found = chatter.explain(measured(folder, case, "nothing", ("y",), ("at_rest", "moving")))
     assert found.summary()["verdict"] == "nothing-missing"
 
 
+@pytest.mark.nightly
 def test_a_softer_nut_is_named(folder, tmp_path):
     path = "machine.axis.Y.drive.nut_stiffness"
     case = load(folder / "case.toml")
@@ -103,6 +106,7 @@ def test_a_softer_nut_is_named(folder, tmp_path):
     assert case.get(path) != pytest.approx(repaired.get(path), rel=0.1)
 
 
+@pytest.mark.nightly
 def test_values_of_the_machine_have_tolerances(folder):
     """A nut that is known to 30 % only is refitted, and nothing is missing."""
     path = "machine.axis.Y.drive.nut_stiffness"
@@ -118,6 +122,7 @@ def test_values_of_the_machine_have_tolerances(folder):
     assert found.case.get(path) == pytest.approx(0.8 * case.get(path), rel=0.02)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("missing", "named", "coulomb"),
     [("translation_y", "Y", 99.2), ("rotation_y", "motor_Y", 0.113)],
@@ -137,6 +142,58 @@ def test_missing_friction_of_an_axis_is_named(folder, missing, named, coulomb):
     # what shows at rest is twice the friction times the slope of its hysteresis
     told = found[f"presliding_stiffness_{named}"]["value"]
     assert told == pytest.approx(2.0 * coulomb * 1.15e4, rel=0.1)
+
+
+def effect_of(case, name, first):
+    """Effect of a name whose first parameter is called so."""
+    measurement = Measurement("frf", "effects", case.folder, case, ())
+    return next(
+        one
+        for one in candidates(measurement)
+        if one.name == name and one.parameters(measurement)[0].name == first
+    )
+
+
+def test_what_a_contact_and_a_nut_are_made_of_is_what_machines_have(folder):
+    """The effects that `explain` tries, with the values of the truth, are the truth."""
+    case = load(folder / "case.toml")
+    path = "machine.axis.Y.drive.nut_stiffness"
+    for name, values, condition, truth in (
+        ("contact", {"stiffness": 2.5e6, "damping": 3.35e3}, "in_cut", CONTACT),
+        ("joint_stiffness", {"Y_nut_stiffness": 0.7}, "moving", {path: 0.7 * case.get(path)}),
+    ):
+        effect = effect_of(case, name, next(iter(values)))
+        found, true, declared = (
+            machine_response(one, condition, "y", "y", LINES)
+            for one in (case.patch(effect.patch(case, values)), case.patch(truth), case)
+        )
+        assert found == pytest.approx(true, rel=1e-9, abs=1e-9 * np.abs(true).max())
+        assert np.abs(true - declared).max() > 0.05 * np.abs(declared).max()
+
+
+@pytest.mark.parametrize(
+    ("missing", "named", "coulomb"),
+    [("translation_y", "Y", 99.2), ("rotation_y", "motor_Y", 0.113)],
+)
+def test_friction_at_rest_is_twice_the_force_times_its_slope(folder, missing, named, coulomb):
+    """Of another force and slope with the same product, the axis answers alike at rest."""
+    truth = load(folder / "case.toml")
+    text = truth.machine_file().to_toml()
+    begin = text.index(f"[friction.{missing}]")
+    end = text.find("[", text.index("hysteresis_slope", begin))
+    (folder / f"without_{named}.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
+    case = truth.patch({"structure.machine": str(folder / f"without_{named}.toml")})
+    effect = effect_of(case, "axis_friction", f"coulomb_{named}")
+    values = {f"coulomb_{named}": coulomb * 1.15, f"viscous_{named}": 0.0}
+    stiffness, _ = effect.reported(values)[f"presliding_stiffness_{named}"]
+    assert stiffness == pytest.approx(2.0 * coulomb * 1.15e4)
+    found, true, without = (
+        machine_response(one, "at_rest", "y", "y", LINES)
+        for one in (case.patch(effect.patch(case, values)), truth, case)
+    )
+    change = np.abs(true - without).max()
+    assert change > 0.02 * np.abs(true).max()
+    assert np.abs(found - true).max() < 0.05 * change
 
 
 def test_a_slower_current_loop_is_another_machine(folder):

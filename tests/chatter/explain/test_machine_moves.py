@@ -331,6 +331,7 @@ def test_a_friction_that_is_weaker_than_declared(tmp_path):
     assert effect["parameters"]["guide"]["value"] == pytest.approx(0.7, rel=0.02)
 
 
+@pytest.mark.nightly
 def test_a_friction_that_is_higher_at_low_speed(tmp_path):
     """Not declared: 60 N, and 120 N at the onset of sliding, which falls over 15 mm/s."""
     lugre = """

@@ -67,6 +67,7 @@ def _cut(path, random, number, rpm, radial, feed) -> str:
     )
 
 
+@pytest.mark.nightly
 def test_runout_of_the_cuts_beside_a_mass_of_the_taps(folder, tmp_path):
     found = chatter.explain(folder)
     summary = found.summary()

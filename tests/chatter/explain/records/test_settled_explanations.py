@@ -41,6 +41,7 @@ def settled(true, case, tolerances, folder) -> Measurement:
     return Measurement("milling", "settled", folder, case, tuple(runs), tolerances)
 
 
+@pytest.mark.nightly
 def test_runout_alone_in_settled_records_is_runout_alone(tmp_path):
     """From rest the declared case, of one mode, leaves not twice what it does as a settled cut."""
     true = plant()._replace(mass=np.array([1.15, 1e4]), runout_offset=OFFSET, runout_angle=ANGLE)
