@@ -41,11 +41,19 @@ class RunningWork:
         What is being done.
     clock : callable, optional
         s, that never goes back.
+    is_compiling : callable, optional
+        Whether the time goes into compiling what the work uses for the first time.
     """
 
-    def __init__(self, description: str, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        description: str,
+        clock: Callable[[], float] = time.monotonic,
+        is_compiling: Callable[[], bool] = lambda: False,
+    ) -> None:
         self.description = description
         self._clock = clock
+        self._is_compiling = is_compiling
         self._begun = clock()
         #: times and parts that the pace is of: the newest report last, one a second before it
         self._reports: deque[tuple[float, int]] = deque()
@@ -69,6 +77,13 @@ class RunningWork:
     def stage(self, description: str) -> None:
         """Report that another part of the work has begun, under its own description."""
         self.description = description
+
+    def begin(self, description: str) -> None:
+        """Report that another part of the work has begun, which counts and is timed anew."""
+        self.description = description
+        self._begun = self._clock()
+        self._reports.clear()
+        self._newest, self._announced = None, False
 
     @property
     def counts(self) -> tuple[int, int | None]:
@@ -95,6 +110,8 @@ class RunningWork:
         """Line on what is being done and how far it is."""
         done, total = self.counts
         so_far = f"{elapsed_in_words(self.elapsed)} so far"
+        if self._is_compiling() and not done:
+            so_far = f"compiling what is used for the first time, {so_far}"
         if not total or (total == 1 and not done):
             return f"{self.description}: {so_far}"
         if not done:
@@ -146,14 +163,21 @@ def progress_bar(description: str, driver: object | None = None) -> Iterator[Run
     function of (done, total); `driver` is as for `announce_compilation`.
     """
     announce_compilation(driver)
-    with running(description) as work:
+    from chatter.first_steps.compiling import is_compiling
+
+    with _shown(RunningWork(description, is_compiling=is_compiling)) as work:
         yield work
 
 
 @contextmanager
 def running(description: str) -> Iterator[RunningWork]:
     """Show on stderr what is being done and how far, without compiled code."""
-    work = RunningWork(description)
+    with _shown(RunningWork(description)) as work:
+        yield work
+
+
+@contextmanager
+def _shown(work: RunningWork) -> Iterator[RunningWork]:
     ended = threading.Event()
     shown = _on_terminal if MESSAGES.is_terminal else _in_lines
     thread = threading.Thread(target=shown, args=(work, ended), daemon=True)

@@ -56,9 +56,9 @@ def simulate(
             result = run_simulation(description, progress=work)
         except DisplacedTooFarError as error:
             failure = error
-            work.stage("critical depth, for a verdict")
-            result = with_linear_verdict(error)
-        work.stage("linear verdict on the same cut")
+            work.begin("critical depth, for a verdict")
+            result = with_linear_verdict(error, work)
+        work.begin("linear verdict on the same cut")
         linear = None if failure is not None else linear_verdict(result)
         if linear is not None:
             result = replace(result, linear=linear)

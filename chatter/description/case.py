@@ -14,7 +14,7 @@ from chatter.description.case_checks import depth_problems, friction_problems, o
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written
 from chatter.description.patchable import Description
-from chatter.description.path import Step
+from chatter.description.path import Step, join_path
 from chatter.description.renamed import Renamed
 from chatter.description.section import raise_if_any
 from chatter.description.sections.cut import Cut
@@ -196,6 +196,15 @@ class Case(Description):
     def on_machine(self) -> bool:
         """Whether the structure is that of a machine."""
         return self.structure is not None and self.structure.machine is not None
+
+    @classmethod
+    def _belongs_elsewhere(cls, steps: tuple[Step, ...]) -> str | None:
+        from chatter.description.machine.machine_file import MachineFile
+
+        if not MachineFile.knows(steps):
+            return None
+        path = join_path(steps)
+        return f"is a path into a machine; into that of a case it is {MACHINE_PATH}{path}"
 
     def require_machine(self, path: str) -> None:
         """Raise InputError where a path leads into a machine and the case is on none."""

@@ -19,6 +19,12 @@ class KindOfFile(NamedTuple):
     use: str  # where such a file belongs
 
 
+#: sections that a case has and a machine has not
+OF_CASES_ALONE = (
+    *("tool", "material", "cut", "structure", "process_damping", "wear", "tool_life"),
+    *("dynamometer", "empirical", "simulation", "stock", "lobes", "uncertainty", "optimum"),
+    "pitch_design",
+)
 #: keys of a kind, of which as many as the number must be there
 _CASE = (("tool", "material", "cut", "structure"), 2)
 _MACHINE = (("body", "beam", "imported", "connector", "point"), 2)
@@ -71,7 +77,8 @@ KINDS_OF_FILES = (
     KindOfFile("library", _of_library, "library of an assembly names it"),
     KindOfFile(
         "machine", lambda data: _keys_of(data, _MACHINE),
-        "structure.machine of a case names it, and chatter frf and move take one",
+        'a case with [tool], [material] and [cut] names it by [structure] machine = "(this file)"; '
+        "chatter frf, move and whatif take the machine itself",
     ),
     KindOfFile("case", _of_case, "chatter check, lobes and simulate take one"),
     KindOfFile("table of materials", _of_materials, "material.table of a case names it"),

@@ -106,6 +106,12 @@ class Description(Section):
         del data
         return {}
 
+    @classmethod
+    def _belongs_elsewhere(cls, steps: tuple[Step, ...]) -> str | None:
+        """Say where a path belongs that leads nowhere here; None where nothing tells."""
+        del steps
+        return None
+
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         """Tell, as path and sentence, what is wrong across sections that are right in themselves.
 
@@ -379,8 +385,17 @@ class Description(Section):
             section = model_at(cls, steps[:index])
             named = section is not None and isinstance(step, str) and step != "*"
             if named and key_of(section, step) is None:
-                here = steps[: index + 1]
-                raise InputError(f"{join_path(steps)}: {unknown_key(cls, here)}")
+                why = cls._belongs_elsewhere(steps) or unknown_key(cls, steps[: index + 1])
+                raise InputError(f"{join_path(steps)}: {why}")
+
+    @classmethod
+    def knows(cls, steps: tuple[Step, ...]) -> bool:
+        """Tell whether a path leads along keys that such a description may have."""
+        try:
+            cls._check_known(steps)
+        except InputError:
+            return False
+        return True
 
     @classmethod
     def _newly_made(cls, document: Any, steps: tuple[Step, ...]) -> list[str]:

@@ -8,3 +8,10 @@ Progress = Callable[[int, int], None]
 
 def no_progress(done: int, total: int) -> None:
     """Report nothing."""
+
+
+def begin(progress: Progress, description: str) -> None:
+    """Announce another part of the work, which counts anew, to what can show its description."""
+    announced = getattr(progress, "begin", None)
+    if announced is not None:
+        announced(description)

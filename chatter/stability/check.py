@@ -13,7 +13,7 @@ from chatter.compile.inclined_axis import effective_diameter, inclined_engagemen
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import to_digits
-from chatter.description.progress import Progress, no_progress
+from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
@@ -306,11 +306,13 @@ def check(
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
     limit = chosen.limits(model, speeds, depths, steps, progress)
+    begin(progress, "stability of the cut itself")
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))
     multiplier = with_multiplier(chosen).multiplier(beside, steps)
     frequency = np.nan
     if abs(multiplier.value) >= 1.0:
         frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
+    begin(progress, "what linear methods leave out")
     neglected = (
         *neglected_resting_friction(model),
         *neglected_in_steady_cut(model, chosen, limit.critical_depth),

@@ -133,13 +133,14 @@ def neglected_edge_forces(
     if share < REPORTED_ONSET:
         return ()
     lowest = max(0.0, 1.0 - share)
+    at = ""
     if not share_is_that_of_all_depths(model):
-        share, lowest = _share_at_limits(model, limits, share)
-    because = (
-        f"edge forces that set in at a chip of zero may lower the limit by {share:.0%}"
-        if lowest > 0.0
-        else f"edge forces that set in at a chip of zero are {share:.3g} times as stiff as the chip"
-    )
+        share, lowest, at = _share_at_limits(model, limits, share, depth)
+    because = "edge forces that set in at a chip of zero "
+    if lowest > 0.0:
+        because += f"may lower the limit by {share:.0%}"
+    else:
+        because += f"are {share:.3g} times as stiff as the chip{at}"
     note = (
         f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
         "a tooth is zero, and vibration shifts these moments, which linear methods leave out: "
@@ -148,18 +149,24 @@ def neglected_edge_forces(
     return (NeglectedEffect(EDGE_FORCES, share, lowest, 1.0, because, note),)
 
 
-def _share_at_limits(model: MillingModel, limits: Array, share: float) -> tuple[float, float]:
-    """Part of the limits that edge forces may take, and what they leave at least, relative.
+def _share_at_limits(
+    model: MillingModel, limits: Array, share: float, depth: float
+) -> tuple[float, float, str]:
+    """Part of the limits that edge forces may take, what they leave at least, and where that holds.
 
-    The worst of the lowest and the highest limit, m; the share at the depth of the cut where there
-    is none, or where they leave nothing.
+    Relative; the worst of the lowest and the highest limit, m. Where there is no limit, where none
+    was looked for, and where they leave nothing, the share is that at the depth of the cut, m.
     """
     found = limits[np.isfinite(limits)]
+    at = f" at {depth * 1e3:.3g} mm, the depth of the cut"
+    if not limits.size:
+        # what it leaves of the limit is known at the limit alone
+        return share, 0.0, f"{at} (at the limit by `chatter check`)"
     if not found.size:
-        return share, max(0.0, 1.0 - share)
+        return share, max(0.0, 1.0 - share), at
     ends = sorted({float(found.min()), float(found.max())})
     lowest = min(lowest_limit_with_onset(model, limit) / limit for limit in ends)
-    return (1.0 - lowest, lowest) if lowest > 0.0 else (max(share, 1.0), 0.0)
+    return (1.0 - lowest, lowest, "") if lowest > 0.0 else (max(share, 1.0), 0.0, at)
 
 
 def notes_on_dashpot(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:

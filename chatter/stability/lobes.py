@@ -6,7 +6,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
-from chatter.description.progress import Progress, no_progress
+from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes
 from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
@@ -63,10 +63,12 @@ def lobes(
     limits = chosen.limits(model, speeds, depths, fixed_steps(case), progress)
     radius = None
     if grid:
+        begin(progress, "spectral radius at all speeds and depths")
         speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
         found = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
         radius = found.reshape(len(depths), len(speeds))
     removal_area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+    begin(progress, "what linear methods leave out")
     neglected = (
         *neglected_resting_friction(model),
         *neglected_in_steady_cut(model, chosen, limits.critical_depth),
@@ -75,6 +77,10 @@ def lobes(
     pockets = find_pockets(
         speeds, limits.critical_depth, max_depth, removal_area, depth_margin=margin
     )
+    begin(progress, "limit at the speed of the cut")
+    operating = _operating_limit(model, chosen, max_depth, progress)
+    begin(progress, "lowest limit between the speeds")
+    lowest = lowest_limit(chosen, model, limits, depths, progress)
     return StabilityDiagram(
         case=case,
         method=chosen.name,
@@ -89,8 +95,8 @@ def lobes(
         zero_order=zero_order,
         pockets=pockets,
         neglected=neglected,
-        operating=_operating_limit(model, chosen, max_depth),
-        lowest=lowest_limit(chosen, model, limits, depths),
+        operating=operating,
+        lowest=lowest,
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
         grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),
@@ -119,9 +125,11 @@ def notes_on_tolerance(model: MillingModel, limits: LimitCurve) -> tuple[str, ..
     )
 
 
-def _operating_limit(model: MillingModel, method: StabilityMethod, max_depth: float) -> LimitCurve:
+def _operating_limit(
+    model: MillingModel, method: StabilityMethod, max_depth: float, progress: Progress
+) -> LimitCurve:
     """Limits at the operating speed, searched at least to the operating depth."""
     case = model.case
     depths = axial_depths(case, beyond_the_cut(case, max_depth))
     speeds = np.array([case.cut.spindle_speed])
-    return method.limits(model, speeds, depths, fixed_steps(case), no_progress)
+    return method.limits(model, speeds, depths, fixed_steps(case), progress)

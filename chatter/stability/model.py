@@ -50,8 +50,8 @@ from cutting.tool.cutter import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
-#: cuts whose edge segments are kept
-_KEPT_SEGMENTS = 64
+#: cuts whose edge segments are kept; of an inclined tool every depth of a search is one
+_KEPT_SEGMENTS, _KEPT_INCLINED = 64, 512
 #: heights over which a table of a straight edge takes the mean of its flank
 _HEIGHTS = 12
 #: largest estimated error of critical depths, relative, where the case gives none
@@ -284,7 +284,7 @@ def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> Ed
     return edge_segments(cutter, list(laws), *cut)
 
 
-@lru_cache(maxsize=_KEPT_SEGMENTS)
+@lru_cache(maxsize=_KEPT_INCLINED)
 def _inclined_segments_of(
     engaged: InclinedEngagement, laws: tuple[ForceLaw, ...], *cut: object
 ) -> EdgeSegments:

@@ -2,8 +2,10 @@
 
 import pytest
 
+from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.kinds_of_files import KINDS_OF_FILES, other_kind
+from chatter.description.kinds_of_files import KINDS_OF_FILES, OF_CASES_ALONE, other_kind
+from chatter.description.machine.machine_file import MachineFile
 from tests.command_line import chatter_command
 from tests.first_use.shop import CUT, written
 from tests.places import EXAMPLES
@@ -28,7 +30,7 @@ def refusal(*arguments):
     ("given", "words"),
     [
         (MEASUREMENT, ["is a measurement (kind and case and [[run]])", "chatter explain"]),
-        (MACHINE, ["is a machine ([body]", "structure.machine of a case names it"]),
+        (MACHINE, ["is a machine ([body]", "names it by [structure] machine ="]),
     ],
 )
 def test_what_takes_a_case_says_what_it_is_given(command, given, words):
@@ -109,6 +111,42 @@ def test_a_feed_rate_without_a_tool_says_what_it_needs(tmp_path):
     )
     (sentence,) = refusal("check", path)
     assert "cut.feed_per_tooth: follows from cut.feed_rate, which needs [tool]" in sentence
+
+
+@pytest.mark.parametrize(
+    ("words", "section"),
+    [
+        (["whatif", MACHINE, "--vary", "cut.spindle_speed=1000..2000 rpm:3"], "cut"),
+        (["whatif", MACHINE, "--vary", "tool.teeth=2..4"], "tool"),
+        (["whatif", MACHINE, "--vary", "structure.position.X=1 mm, 2 mm"], "structure"),
+        (
+            ["whatif", MACHINE, "--set", 'cut.axial_depth="1 mm"', "--vary", "step=1 ms, 2 ms"],
+            "cut",
+        ),
+        (["frf", MACHINE, "--set", "tool.teeth=3"], "tool"),
+        (["move", MACHINE, "--set", "material.Ktc=2 GPa"], "material"),
+    ],
+)
+def test_keys_of_a_case_on_a_machine_say_what_to_write_and_run(words, section):
+    """They were unknown keys, with a list of those of a machine."""
+    (sentence,) = refusal(*words)
+    assert f"this is a machine file, and [{section}] belongs to a case" in sentence
+    assert '[structure] machine = "(this file)"' in sentence
+    assert 'paths into the machine begin with "machine."' in sentence
+
+
+def test_every_section_that_a_machine_has_not_is_known_as_one_of_a_case():
+    own = set(Case.model_fields) - set(MachineFile.model_fields)
+    assert set(OF_CASES_ALONE) == own
+
+
+@pytest.mark.parametrize("path", ["axis.Y.position", "body.table.mass"])
+def test_keys_of_a_machine_on_a_case_name_the_path_into_it(path):
+    """They were unknown keys, with a list of those of a case."""
+    (sentence,) = refusal(
+        "check", EXAMPLES / "face-mill-chatter" / "case.toml", "--set", f"{path}=3"
+    )
+    assert f"is a path into a machine; into that of a case it is machine.{path}" in sentence
 
 
 def test_a_case_that_is_right_is_refused_by_none(tmp_path):

@@ -9,6 +9,7 @@ import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.stability.edge_force_onset import edge_force_onset, lowest_limit_with_onset
+from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.methods.time_domain.critical_depths import growths
 from chatter.stability.model import milling_model
 from chatter.stability.registry import METHODS
@@ -98,6 +99,24 @@ def test_bound_of_a_finishing_ball_is_that_of_its_limit_not_of_its_shallow_cut()
     # the limit in time lies between both
     assert radius[0] < 0.95
     assert radius[1] > 1.0
+
+
+def test_without_a_limit_the_share_says_the_depth_that_it_is_for():
+    """`simulate` gave 1.15, of the thin cut, where `check` gave 0.80, of its limit."""
+    case = cut(**FINISHING)
+    model, method = milling_model(case), METHODS["collocation"]
+    (of_cut,) = neglected_in_steady_cut(model, method)
+    assert of_cut.share == pytest.approx(edge_force_onset(model, case.cut.axial_depth))
+    # what it leaves of a limit that was not looked for is not known
+    assert of_cut.lowest == 0.0
+    assert of_cut.because.endswith(
+        f"{of_cut.share:.3g} times as stiff as the chip at 0.3 mm, the depth of the cut "
+        "(at the limit by `chatter check`)"
+    )
+    limit = chatter.check(case, method="collocation").limit.critical_depth
+    (at_limit,) = neglected_in_steady_cut(model, method, limit)
+    assert "0.3 mm" not in at_limit.because
+    assert at_limit.because.endswith(f"may lower the limit by {at_limit.share:.0%}")
 
 
 @pytest.mark.parametrize("edge", [True, False])

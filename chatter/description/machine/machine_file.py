@@ -8,6 +8,7 @@ from pydantic import Field, PrivateAttr
 
 from chatter.description import renamed
 from chatter.description.errors import InputError
+from chatter.description.kinds_of_files import OF_CASES_ALONE
 from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.beam import BeamSection
 from chatter.description.machine.bodies import (
@@ -25,6 +26,7 @@ from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.move import MoveSection
 from chatter.description.machine.references import dimension_problems, reference_problems
 from chatter.description.patchable import Description
+from chatter.description.path import Step
 from chatter.description.quantities import QuantityField, quantity, whole_number
 from chatter.description.renamed import Renamed
 from chatter.description.toml_document import moved_reference
@@ -98,6 +100,16 @@ class MachineFile(Description):
         for section in content["move"].values():
             if section["file"] is not None:
                 section["file"] = str(Path(section["file"]).resolve())
+
+    @classmethod
+    def _belongs_elsewhere(cls, steps: tuple[Step, ...]) -> str | None:
+        if steps[0] not in OF_CASES_ALONE:
+            return None
+        return (
+            f"this is a machine file, and [{steps[0]}] belongs to a case: write one with [tool], "
+            '[material], [cut] and [structure] machine = "(this file)", and give the command that '
+            'case; paths into the machine begin with "machine." there'
+        )
 
     @classmethod
     def _move_references(cls, document: Any, old: Path, new: Path) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from chatter.cli import COMMANDS, progress
 from chatter.cli.progress import RunningWork, elapsed_in_words, in_words, progress_bar, running
+from chatter.description.progress import begin
 from tests.places import ROOT
 
 #: commands that compute nothing
@@ -96,6 +97,53 @@ def test_minutes_are_announced_once(clock):
     # 11 parts in 10 s: 89 more take 81 s, 91 s in all
     assert work.announcement() == "more samples: about 2 min in all; Ctrl-C ends it"
     assert work.announcement() is None
+
+
+def test_another_part_counts_and_is_timed_anew(clock):
+    """ "all 34 done, evaluating the result for 2 min" said neither of what nor how far."""
+    work = RunningWork("limits at all speeds", clock)
+    clock.now += 100.0
+    work(34, 34)
+    begin(work, "lowest limit between the speeds")
+    clock.now += 3.0
+    assert work.line() == "lowest limit between the speeds: 3 s so far"
+    work(10, 40)
+    clock.now += 3.0
+    work(20, 40)
+    assert work.line() == "lowest limit between the speeds: 20 of 40 (50%), about 6 s left"
+    begin(lambda done, total: None, "what takes no name is not asked")
+
+
+def test_compiling_is_named(clock):
+    """A method used for the first time ran 90 s as "critical depth: 90 s so far"."""
+    work = RunningWork("critical depth", clock, is_compiling=lambda: True)
+    clock.now += 5.0
+    assert work.line() == "critical depth: compiling what is used for the first time, 5 s so far"
+    work(1, 2)
+    assert "compiling" not in work.line()
+
+
+def test_compilation_is_seen_while_it_goes_on():
+    import numba
+
+    from chatter.first_steps.compiling import is_compiling
+
+    seen = []
+
+    @numba.extending.overload(_asked)
+    def _(value):
+        seen.append(is_compiling())
+        return lambda value: value
+
+    assert not is_compiling()
+    assert numba.njit(lambda value: _asked(value))(1.0) == 1.0
+    assert seen[0]
+    assert not is_compiling()
+
+
+def _asked(value):
+    """Of what compiled code asks while it is compiled."""
+    return value
 
 
 def test_what_comes_after_the_last_part_is_told(clock):
