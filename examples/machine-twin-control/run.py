@@ -3,7 +3,7 @@
 The tests of chapter 3, "Virtualization of Machine Tools", on models of its machines: blows on the
 spindle frame and the spindle's tip by harmonic response and by simulation in time, the fastest
 100 mm with its positioning error (Comau, box in box), and preloaded rack-and-pinion drives
-(Gepro). What is published, chosen and calibrated: PROVENANCE.md.
+and backlash (Gepro). What is published, chosen and calibrated: PROVENANCE.md.
 """
 
 from pathlib import Path
@@ -27,7 +27,10 @@ from chatter.report.published_against_obtained import (
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MoveResult
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
+from dynamics.drive.backlash import Backlash
+from dynamics.drive.rack_and_pinion import RackAndPinion
 from dynamics.frf.container import Frf
+from dynamics.structure.spring_coupling import Coupling
 from dynamics.trajectory.set_points import SetPoints, set_points
 
 HERE = Path(__file__).parent
@@ -60,6 +63,12 @@ HEIGHTS = (
 )
 #: configurations of figure 3.8, whose positions the text does not give, m; the first is the file's
 CONFIGURATIONS = ({}, {"X": 0.3}, {"Y": 0.3}, {"Y": -0.3}, {"Z": 0.2}, {"Z": -0.2})
+#: N, friction of the guide that the rack axis reverses against: chosen, 1 % of its weight
+FRICTION = 1200.0
+#: N m of each motor in the reversals: as in the file, less than what the friction takes, none
+PRELOADS = (12.0, 0.8, 0.0)
+#: moves of the file that begin at rest and stop
+STARTS = ("gentle", "fast")
 
 
 class HammerTest(NamedTuple):
@@ -150,10 +159,53 @@ def teeth_in(machine: MachineFile, name: str) -> TeethRun:
     duration = len(points.position) * cycle + section.afterwards
     inputs = RunInputs(duration, points, outputs=rows, stride=points.steps)
     run = run_machine(whole, machine.step, inputs)
-    teeth = np.array([one.stiffness * run.displacement[one.name] for one in meshes]).T
+    teeth = np.array([_force(one, run.displacement[one.name]) for one in meshes]).T
     shared = run.force["drive X"] / len(meshes)
     preloads = [motor.preload for motor in axis.drive.motors]
     return TeethRun(run.time, teeth, shared[:, None] + np.array(preloads))
+
+
+def _force(mesh: Coupling, stretch: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Force of a spring, N, that has a gap or has none."""
+    if not mesh.backlash:
+        return mesh.stiffness * stretch
+    return Backlash(mesh.stiffness, mesh.damping, mesh.backlash).elastic_force(stretch)
+
+
+def reversal(machine: MachineFile, preload: float) -> MoveResult:
+    """Move to and fro against the friction of the guide, with a preload of each motor, N m."""
+    motors = machine.axis["X"].drive.motors
+    pushes = {
+        f"axis.X.drive.motors[{index}].preload": float(np.sign(one.preload)) * preload
+        for index, one in enumerate(motors)
+    }
+    guide = {"law": "tanh-hysteresis", "on": {"axis": "X"}, "coulomb": FRICTION,
+             "hysteresis_slope": 1e6}  # fmt: skip
+    return chatter.move(machine.patch({"friction.guide": guide, **pushes}), "reversal")
+
+
+def lost_motion(move: MoveResult) -> float:
+    """Way of the motors, m, between the slide's going forward and back at speed, last period."""
+    speed, last = move.velocity[:, 0], move.time > 0.5 * (move.time[0] + move.time[-1])
+    lag, fast = _lag(move), np.abs(speed) > 0.9 * np.max(np.abs(speed))
+    return float(np.mean(lag[last & fast & (speed > 0)]) - np.mean(lag[last & fast & (speed < 0)]))
+
+
+def _lag(move: MoveResult) -> NDArray[np.float64]:
+    """What the slide lags behind the mean of its motors, m."""
+    return (move.motor - move.scale)[:, 0]
+
+
+def lost_motion_by_hand(machine: MachineFile, preload: float) -> float:
+    """The same, m: the windup 2F/K of all drives, and the gap beyond what the preload holds.
+
+    Each of n pinions carries F/n; that of a motor which pulls back keeps its flank while its
+    preload, at the rack, is more.
+    """
+    drive = machine.axis["X"].drive.spec()
+    windup = 2.0 * FRICTION * _softness(drive) / len(drive.motors)
+    held = preload / drive.transmission > FRICTION / len(drive.motors)
+    return windup + (0.0 if held else drive.backlash)
 
 
 def drive_mode(machine: MachineFile) -> float:
@@ -168,13 +220,17 @@ def drive_mode(machine: MachineFile) -> float:
 def of_springs(machine: MachineFile) -> float:
     """The same, Hz, of the gantry's mass on the drives' springs alone."""
     drive = machine.axis["X"].drive.spec()
-    soft = (
+    stiffness = len(drive.motors) / _softness(drive)
+    return float(np.sqrt(stiffness / machine.get("body.gantry.mass")) / (2.0 * np.pi))
+
+
+def _softness(drive: RackAndPinion) -> float:
+    """Compliance of one drive from its motor to the rack, m/N."""
+    return (
         drive.transmission**2 / drive.coupling_stiffness
         + drive.pinion_radius**2 / drive.gearbox_stiffness
         + 1.0 / drive.mesh_stiffness
     )
-    mass = machine.get("body.gantry.mass")
-    return float(np.sqrt(len(drive.motors) / soft / mass) / (2.0 * np.pi))
 
 
 def hammer_picture(tests: dict[str, HammerTest]) -> Figure:
@@ -241,6 +297,26 @@ def teeth_picture(runs: dict[str, TeethRun]) -> Figure:
     return figure
 
 
+def reversal_picture(moves: dict[float, MoveResult]) -> Figure:
+    """What the slide lags behind its motors over its last period to and fro."""
+    figure = style.new_figure(9.0, 4.2)
+    axes = figure.subplots()
+    for (preload, move), colour in zip(
+        moves.items(), (style.BLUE, style.GREY, style.RED), strict=True
+    ):
+        last = move.time > 0.5 * (move.time[0] + move.time[-1])
+        label = f"preload {preload:g} N m: {1e6 * lost_motion(move):.1f} µm lost"
+        axes.plot(
+            1e3 * move.motor[last, 0], 1e6 * _lag(move)[last],
+            color=colour, linewidth=1.2, label=label,
+        )  # fmt: skip
+    axes.set_xlabel("way of the motors [mm]")
+    axes.set_ylabel("lag of the slide [µm]")
+    axes.legend(fontsize=8.0, frameon=False, loc="center", bbox_to_anchor=(0.5, 0.72))
+    style.finish(axes)
+    return figure
+
+
 def main(out: Path) -> list[Path]:
     """Run the tests of both machines, return what was written."""
     out = Path(out)
@@ -253,18 +329,33 @@ def main(out: Path) -> list[Path]:
     written += move.save(out / "fastest-move")
     drive = chatter.frf(gepro)
     written += drive.save(out / "gepro-drive")
-    runs = {f"{name}: {_limit(gepro, name)}": teeth_in(gepro, name) for name in gepro.move}
+    runs = {f"{name}: {_limit(gepro, name)}": teeth_in(gepro, name) for name in STARTS}
+    reversals = {preload: reversal(gepro, preload) for preload in PRELOADS}
     for name, figure in (
         ("hammer.png", hammer_picture(tests)),
         ("fastest-move.png", move_picture(move)),
         ("preload.png", teeth_picture(runs)),
+        ("reversal.png", reversal_picture(reversals)),
     ):
         figure.savefig(out / name)
         written.append(out / name)
     rows = [*of_hammer(tests), *of_configurations(in_configurations(comau))]
     rows += findings(hammered, move, gepro, list(runs.values()))
+    rows += of_reversals(gepro, reversals)
     written.append(write_findings(rows, out))
     return written
+
+
+def of_reversals(gepro: MachineFile, moves: dict[float, MoveResult]) -> list[Finding]:
+    """Lost motion of the rack axis, with and without preload, beside that by hand."""
+    return [
+        Finding(
+            f"Gepro, preload {preload:g} N m: lost motion, and by hand", "-",
+            f"{1e6 * lost_motion(move):.2f} um, {1e6 * lost_motion_by_hand(gepro, preload):.2f} um",
+            kind=RECOVERED,
+        )
+        for preload, move in moves.items()
+    ]  # fmt: skip
 
 
 def _limit(machine: MachineFile, name: str) -> str:
@@ -335,7 +426,7 @@ def findings(
     rows.append(
         Finding("Gepro: the same, mass on springs", "-", of_springs(gepro), "Hz", kind=RECOVERED)
     )
-    for one, name in zip(runs, gepro.move, strict=True):
+    for one, name in zip(runs, STARTS, strict=True):
         # once preloaded and before the move, and at the least of the pinion that pushes forward
         still = one.teeth[one.time < 0.95 * gepro.move[name].standstill][-1, 0]
         least = float(np.min(one.teeth[one.time > gepro.move[name].standstill, 0]))

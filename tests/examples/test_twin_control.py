@@ -104,6 +104,20 @@ def test_preload_closes_over_the_teeth_and_torque_is_shared(gepro, run):
     assert np.ptp(fast.torque - fast.torque[:, :1], axis=0) == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize(("preload", "gap"), [(12.0, 0), (1.0, 0), (0.8, 35e-6), (0.0, 35e-6)])
+def test_a_reversal_loses_the_gap_where_the_preload_is_less_than_the_load(gepro, run, preload, gap):
+    """1200 N of friction are 300 N at each of four pinions: 0.9 N m at a motor, at 3 mm/rad.
+
+    Coupling, gearbox and mesh in a row, four times in parallel, strain by F/K either way.
+    """
+    assert gepro.get("axis.X.drive.backlash") == pytest.approx(35e-6)
+    soft = 0.003**2 / 20e3 + 0.06**2 / 400e3 + 1.0 / 500e6
+    expected = gap + 2.0 * 1200.0 * soft / 4.0
+    found = run.lost_motion(run.reversal(gepro, preload))
+    assert found == pytest.approx(expected, rel=2e-3)
+    assert run.lost_motion_by_hand(gepro, preload) == pytest.approx(expected, rel=1e-9)
+
+
 def test_heights_at_the_tip_are_near_those_of_the_chapter(tests, run):
     """Within a factor of 1.3 of its model by springs; running loops damp them further."""
     for name, frequency, model in run.HEIGHTS:
