@@ -2,7 +2,9 @@
 
 import os
 
+import pytest
 from hypothesis import settings
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 # matrices in the tests are small: threads of BLAS cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -12,8 +14,27 @@ settings.register_profile("gate", derandomize="CHATTER_PROPERTIES" not in os.env
 settings.load_profile("gate")
 
 
+def pytest_configure(config):
+    """Workers share what they compile."""
+    if hasattr(config, "workerinput"):
+        from tests.compiled_once import compile_once
+
+        compile_once()
+
+
 def pytest_collection_modifyitems(items):
     """Mark nightly tests in a report, from which the record of a nightly run is made."""
     for item in items:
         if item.get_closest_marker("nightly"):
             item.user_properties.append(("nightly", True))
+
+
+@pytest.fixture(autouse=True)
+def layout_of_pictures(request, monkeypatch):
+    """Make no room for the labels of a picture, which is most of the time of drawing it.
+
+    A nightly run makes it, and modules of tests that look at pictures have a fixture of this name
+    that does nothing.
+    """
+    if "not nightly" in request.config.option.markexpr:
+        monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)

@@ -10,6 +10,7 @@ import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from tests.places import ROOT
@@ -149,6 +150,7 @@ class Hit:
         return f"{self.file}:{self.line}: {self.found!r}: {self.term}"
 
 
+@cache
 def _words(identifier: str) -> list[str]:
     """Words of an identifier in snake or camel case, in lower case."""
     apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", identifier)
@@ -168,10 +170,16 @@ def _named(identifier: str, pattern: str) -> bool:
     return False
 
 
+@cache
+def _matching(identifier: str) -> list[Word]:
+    """Words that an identifier holds, in whatever folder."""
+    return [word for word in WORDS if any(_named(identifier, one) for one in word.names.split())]
+
+
 def in_names(file: str, line: int, identifier: str) -> Iterator[Hit]:
     """Forbidden words in an identifier."""
-    for word in WORDS:
-        if file.startswith(word.within) and any(_named(identifier, p) for p in word.names.split()):
+    for word in _matching(identifier):
+        if file.startswith(word.within):
             yield Hit(file, line, identifier, word.term)
 
 

@@ -14,8 +14,14 @@ TUTORIALS = sorted(
 )
 
 
-#: half a minute and more each; what they show has tests of its own
-NIGHTLY = {"writing-your-own-law", "closing-the-loop-on-real-tests", "operators-sheet"}
+#: ten seconds and more each; what they show has tests of its own
+NIGHTLY = {
+    "writing-your-own-law",
+    "closing-the-loop-on-real-tests",
+    "operators-sheet",
+    "pitch-design",
+    "learning-from-cuts",
+}
 
 
 @pytest.mark.parametrize(

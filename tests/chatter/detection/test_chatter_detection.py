@@ -99,15 +99,18 @@ def random_records(seed, count):
         yield stable, has_runout, record_of(cut, depth, turns, rng, noise)
 
 
-def test_random_records():
+@pytest.mark.parametrize(
+    ("count", "least"), [(20, 19), pytest.param(60, 58, marks=pytest.mark.nightly)]
+)
+def test_random_records(count, least):
     right = 0
-    for stable, has_runout, record in random_records(7, 60):
+    for stable, has_runout, record in random_records(7, count):
         detection = detect_chatter(record)
         assert not (stable and has_runout and not detection.stable), detection.reason
         right += detection.stable == stable
         assert 0.0 <= detection.confidence <= 1.0
         assert math.isnan(detection.chatter_frequency) == detection.stable
-    assert right >= 58
+    assert right >= least
 
 
 @pytest.mark.parametrize("teeth", [2, 3, 4])

@@ -63,11 +63,14 @@ def test_files(found, tmp_path):
     assert summary["cases"][0]["cuts"][0]["spindle_speed_rpm"] == pytest.approx(4500.0)
 
 
-def test_a_title_is_no_formula(tmp_path):
+def test_the_command_and_a_title_that_is_no_formula(tmp_path):
     case = chatter.load(STEEL).patch(
         {"title": "=1+1", "lobes.speeds": {"from": "4000 rpm", "to": "5000 rpm", "count": 20}}
     )
-    chatter.sheet(case).save(tmp_path)
+    case.save(tmp_path / "case.toml")
+    shown = chatter_command("sheet", tmp_path / "case.toml", "--out", tmp_path)
+    assert "as stated" in shown.stdout
+    assert (tmp_path / "sheet.pdf").exists()
     cell = openpyxl.load_workbook(tmp_path / "sheet.xlsx")["cuts"]["A2"]
     assert (cell.value, cell.data_type) == ("=1+1", "s")
 
@@ -81,12 +84,6 @@ def test_variation_helps_where_the_lobes_are_dense():
     assert best.limit is None or best.limit > 1.1 * limit
     # nothing to gain where the cut has its margin
     assert variation_that_helps(case.patch({"cut.axial_depth": 0.5 * limit}), limit) is None
-
-
-def test_the_command(tmp_path):
-    shown = chatter_command("sheet", STEEL, "--out", tmp_path)
-    assert "as stated" in shown.stdout
-    assert (tmp_path / "sheet.pdf").exists()
 
 
 def test_no_case():

@@ -41,6 +41,7 @@ def screened(path, truth):
     }
 
 
+@pytest.mark.nightly
 def test_what_frfs_exclude_is_not_simulated(tmp_path):
     """FRFs are as declared; whether tool and workpiece touch they do not tell."""
     truth = case_in(tmp_path, MACHINE + FRICTION)
