@@ -3,6 +3,9 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
+# commands that tests start anew read compiled modules
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test nightly campaigns lowest manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
