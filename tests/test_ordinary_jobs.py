@@ -64,6 +64,33 @@ def test_numbers_of_the_page_are_those_of_the_textbook():
     assert f"{math.pi * effective * 60.0 / (math.pi * 0.01) * 1e-3:.2f} m/min there" in PAGE
 
 
+def test_numbers_of_further_tools_by_hand():
+    slot = 1900e6 * 11e-3 * 25e-3 * 0.076 / 60.0, 3 * 25e3 * 11e-3 * 25.0 / 60.0
+    assert f"= {slot[0]:.1f} W" in PAGE
+    assert f"each: {slot[1]:.1f} W" in PAGE
+    assert f"power {sum(slot):.0f} W mean" in PAGE
+    rough = 767e6 * 10e-3 * 20e-3 * 10.8 / 60.0, 1.5 * 27.7e3 * 10e-3 * math.pi * 0.02 * 400.0
+    assert f"= {rough[0] / 1e3:.2f} kW" in PAGE
+    assert f"each: {rough[1] / 1e3:.2f} kW" in PAGE
+    assert "power 38.06 kW mean" in PAGE
+    assert sum(rough) == pytest.approx(38.06e3, rel=3e-4)
+    slope = 1.0 / math.tan(math.radians(17.0))
+    z = 0.8e-3 * (np.arange(100000) + 0.5) / 100000
+    arc = np.arccos(1.0 - (22e-3 + z * slope) / (16e-3 + z * slope))
+    swept = np.mean((16e-3 + z * slope) * arc) * 0.8e-3 / math.sin(math.radians(17.0))
+    area = 0.8e-3 * (22e-3 + 0.4e-3 * slope)
+    high = 1900e6 * area * 0.38 / 60.0, 4.0 / (2.0 * math.pi) * 25e3 * 62.5 * swept
+    assert f"{1e6 * area:.2f} mm²" in PAGE
+    assert f"along it, {1e6 * swept:.2f} mm², is {high[1]:.1f} W" in PAGE
+    assert f"power {sum(high):.0f} W mean" in PAGE
+    z = 0.4e-3 * (np.arange(100000) + 0.5) / 100000
+    lean = math.radians(10.0)
+    wide = z * math.tan(math.radians(30.0) + lean) + np.minimum(z / math.tan(lean), 1e-3)
+    area = 0.4e-3 * np.mean(wide)
+    assert f"{1e6 * area:.4f} mm²" in PAGE
+    assert f"power {1900e6 * area * 0.38 / 60.0:.2f} W mean" in PAGE
+
+
 def test_numbers_of_chips_and_power_by_hand():
     speed = 1.0  # m/s, 60 m/min
     chip = 380.0 / (4.0 * 60e3 / (math.pi * 16.0))  # mm

@@ -14,14 +14,18 @@ from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.formatting import to_digits
+from chatter.description.units import rpm
 from chatter.io.recorded_columns import KINDS, require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
+    from chatter.description.case import Case
     from chatter.simulation.result import SimulationResult
 
 #: peak at the start over that of the settled cut from which on it is worth a line
 _NOTABLE = 1.02
+#: W from which on power is printed in kW
+_LARGE_POWER = 1e4
 #: cutting edge angle from which on an edge makes a wall, deg
 _UPRIGHT = 89.0
 
@@ -85,11 +89,12 @@ def _print_summary(result: SimulationResult) -> None:
     print_table(f"force on the tool, {part}", ["", "peak [N]", "mean [N]"], rows)
     power = summary["power"]
     print_line(
-        f"power {power['mean_W']:.4g} W mean, {power['peak_W']:.4g} W peak; "
+        f"power {_watts(power['mean_W'])} mean, {_watts(power['peak_W'])} peak; "
         f"torque {power['mean_torque_Nm']:.3g} N m mean"
     )
     print_line(
-        f"cutting speed {summary['cutting_speed_m_per_min']:.4g} m/min, "
+        f"{_speed(result.case)}, cutting speed {summary['cutting_speed_m_per_min']:.4g} "
+        f"m/min{_speed_in_cut(result.case)}, "
         f"feed rate {to_digits(summary['feed_rate_mm_per_min'], 4)} mm/min; "
         f"displacement {summary['peak_displacement_um']:.3g} um peak"
     )
@@ -101,6 +106,25 @@ def _print_summary(result: SimulationResult) -> None:
     print_answer(f"{summary['verdict']}{at}: {summary['reason']}")
     if result.linear is not None:
         print_line(result.linear.sentence())
+
+
+def _watts(power: float) -> str:
+    return f"{power:.4g} W" if abs(power) < _LARGE_POWER else f"{power / 1e3:.4g} kW"
+
+
+def _speed(case: Case) -> str:
+    return f"{to_digits(rpm(case.cut.spindle_speed), 4)} rpm"
+
+
+def _speed_in_cut(case: Case) -> str:
+    """Largest diameter in the cut and the speed there, where it is another than the diameter."""
+    from chatter.compile.inclined_axis import diameter_in_cut
+
+    wide = None if case.stock is not None else diameter_in_cut(case)
+    if wide is None:
+        return ""
+    there = 30.0 * wide * case.cut.spindle_speed
+    return f" on the diameter, {there:.4g} m/min on the {1e3 * wide:.4g} mm that cut"
 
 
 def _surface(summary: dict, edge_angle: float) -> list[str]:

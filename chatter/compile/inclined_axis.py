@@ -77,6 +77,14 @@ def effective_diameter(engagement: InclinedEngagement) -> float:
     return 2.0 * wide
 
 
+def diameter_in_cut(case: Case) -> float | None:
+    """Largest diameter, m, on which the tool of a case cuts; None where it is the diameter."""
+    cutter = cutter_of(case)
+    if is_inclined(case):
+        return effective_diameter(inclined_engagement(case, cutter))
+    return None if cutter.is_cylindrical else 2.0 * cutter.radius_at(case.cut.axial_depth)
+
+
 def _immersion_at(cutter: Cutter, height: float) -> float:
     """Axial immersion angle of the edge at a height above the tip, rad."""
     if height < corner_height(cutter):
@@ -154,24 +162,13 @@ def _of_tool(case: Case) -> list[str]:
 
 def _of_cone(case: Case, cutter: Cutter) -> list[str]:
     """What keeps a tapered or chamfered edge from being computed."""
-    found, cut = [], case.cut
-    if cut.radial_depth is not None:
-        found.append(
-            "the width of cut of a taper is stated by stepover, not by radial_depth: a wall "
-            "beside an inclined cone has no one distance from it"
-        )
-    if cutter.corner_radius == 0.0:
-        found.append(
-            f'a sharp cone (kind = "{case.tool.kind}") is not computed; a tapered ball end mill '
-            'is: kind = "taper" with corner_radius'
-        )
-    elif tool_axis_angle(case) >= cutter.edge_angle:
-        found.append(
-            f"the flank of the taper, at {math.degrees(cutter.edge_angle):.4g} deg, would be the "
-            f"lowest of the tool, with its axis at {math.degrees(tool_axis_angle(case)):.4g} deg; "
-            "incline it by less"
-        )
-    return found
+    if tool_axis_angle(case) < cutter.edge_angle:
+        return []
+    return [
+        f"the flank of the taper, at {math.degrees(cutter.edge_angle):.4g} deg, would be the "
+        f"lowest of the tool, with its axis at {math.degrees(tool_axis_angle(case)):.4g} deg; "
+        "incline it by less"
+    ]
 
 
 def _of_cut(case: Case) -> list[str]:

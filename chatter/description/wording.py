@@ -143,16 +143,42 @@ _SHOP_WORDS = {
     "bullnose": "bull nose", "torus": "bull nose", "toroidal": "bull nose", "corner": "bull nose",
     "tapered": "taper", "cone": "taper", "conical": "taper",
     "face mill": "inserted", "facemill": "inserted", "indexable": "inserted",
-    "shoulder mill": "inserted",
+    "shoulder mill": "inserted", "high feed": "inserted", "high-feed": "inserted",
+    "t-slot": "end mill", "t-slot cutter": "end mill", "side mill": "end mill",
+    "slitting saw": "end mill", "saw": "end mill", "disc": "end mill",
+    "chamfer": "taper", "chamfer mill": "taper",
     "climb": "down", "conventional": "up", "slotting": "slot", "face milling": "face",
     "facing": "face",
 }  # fmt: skip
+
+
+#: work that no kind of tool or of milling states, and what there is to say of it
+_OTHER_WORK = {
+    ("drill", "drilling", "boring", "boring bar", "bore", "turning", "reamer", "reaming", "tap",
+     "tapping"): "that is no milling: of other processes nothing is computed here",
+    ("trochoidal", "trochoid", "adaptive", "dynamic"):
+        'state its widest engagement by "down" or "up" and that radial_depth; its feed there is '
+        "that of the program",
+    ("thread mill", "thread milling", "thread"):
+        'there is no kind for its profile; "end mill", with the length of thread in the cut as '
+        "axial_depth, takes its flanks as one straight edge",
+}  # fmt: skip
+
+
+def _on_other_work(given: str, allowed: str) -> str:
+    """What is to be said of a word for a tool or a process that has no kind here."""
+    if '"end mill"' not in allowed and '"slot"' not in allowed:
+        return ""
+    said = (text for words, text in _OTHER_WORK.items() if given.lower() in words)
+    return "".join(f"{text}; " for text in said)
 
 
 def _not_allowed(item: Any) -> str:
     allowed, given = item["ctx"]["expected"].replace("'", '"'), item["input"]
     word = _SHOP_WORDS.get(given.lower()) if isinstance(given, str) else None
     here = f'it is "{word}" here; ' if word and f'"{word}"' in allowed else ""
+    if isinstance(given, str):
+        here += _on_other_work(given, allowed)
     return f"{formatted(given)} is not allowed; {here}allowed are {allowed}"
 
 

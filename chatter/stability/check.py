@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from chatter.compile.cutter import cutter_of
-from chatter.compile.inclined_axis import effective_diameter, inclined_engagement, is_inclined
+from chatter.compile.inclined_axis import diameter_in_cut, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import to_digits
@@ -195,12 +195,8 @@ class StabilityCheck(NotebookResult):
         """Table of the verdict: what, and how much."""
         cut, tool = self.case.cut, self.case.tool
         speed = cut.spindle_speed * tool.diameter / 2.0
-        cutter, effective = cutter_of(self.case), []
-        inclined = is_inclined(self.case)
-        if inclined or not cutter.is_cylindrical:
-            wide = 2.0 * cutter.radius_at(cut.axial_depth)
-            if inclined:
-                wide = effective_diameter(inclined_engagement(self.case, cutter))
+        wide, effective = diameter_in_cut(self.case), []
+        if wide is not None:
             there = f"{30.0 * wide * cut.spindle_speed:.4g} m/min there"
             effective = [["effective diameter", f"{1e3 * wide:.4g} mm, {there}"]]
         return [

@@ -69,6 +69,47 @@ def test_a_tapered_ball_by_collocation_and_in_time():
     assert radius(case, "time-domain") == pytest.approx(radius(case), rel=4e-3)
 
 
+CONE = {
+    "tool.kind": "taper", "tool.taper_angle": "30 deg", "tool.diameter": 4e-3,
+    "tool.corner_radius": None, "tool.helix": 0.0, "cut.axial_depth": 0.4e-3,
+    "cut.feed_per_tooth": FEED, "cut.stepover": None, "cut.radial_depth": 1e-3,
+}  # fmt: skip
+
+
+def cone(lead, tilt, mode="up", **further):
+    return case_of(lead, tilt, mode, STEP, **further).patch({**CONE, **SHARP})
+
+
+@pytest.mark.parametrize(("tilt", "mode"), [(10.0, "up"), (-10.0, "down")])
+def test_power_of_a_sharp_cone_is_its_removal_rate_times_ktc(tilt, mode):
+    """Leaning towards the work, its wall 1 mm within the rim, which is the lowest of the tool.
+
+    The flank reaches out by its angle and the tilt, the end rises inwards by the tilt.
+    """
+    lean, half, depth, wide = math.radians(10.0), math.radians(30.0), 0.4e-3, 1e-3
+    z = depth * (np.arange(100000) + 0.5) / 100000
+    reach = z * math.tan(half + lean) + np.minimum(z / math.tan(lean), wide)
+    rate = depth * np.mean(reach) * FEED * 2 * 8000.0 / 60.0
+    found = chatter.simulate(cone(0.0, tilt, mode, simulation={"revolutions": 4}))
+    assert found.mean_power == pytest.approx(KTC * rate, rel=4e-3)
+
+
+def test_a_sharp_cone_that_hardly_leads_is_an_upright_one():
+    upright, leading = (
+        cone(lead, 0.0, structure={"mode": MODES}, simulation={"revolutions": 4})
+        for lead in (0.0, 1e-6)
+    )
+    one, other = chatter.simulate(upright), chatter.simulate(leading)
+    largest = np.abs(one.mean_force).max()
+    assert other.mean_force == pytest.approx(one.mean_force, abs=2e-3 * largest)
+    assert radius(leading) == pytest.approx(radius(upright), rel=1e-3)
+
+
+def test_a_sharp_cone_by_collocation_and_in_time():
+    case = cone(6.0, 12.0, structure={"mode": MODES})
+    assert radius(case, "time-domain") == pytest.approx(radius(case), rel=4e-3)
+
+
 PLOUGHING = {
     "tool.clearance_angle": "8 deg", "tool.edge_radius": 30e-6, "cut.spindle_speed": "4000 rpm",
     "cut.feed_per_tooth": 0.05e-3, "cut.axial_depth": 0.7e-3, **SHARP,

@@ -84,13 +84,6 @@ def test_next_to_none_is_nearly_upright():
 @pytest.mark.parametrize(
     ("tool", "cut", "rest", "words"),
     [
-        ({"kind": "taper", "taper_angle": "5 deg"}, {}, {}, "a tapered ball end mill is"),
-        (
-            {"kind": "taper", "taper_angle": "5 deg", "corner_radius": "5 mm"},
-            {"stepover": None, "radial_depth": "1 mm"},
-            {},
-            "stated by stepover",
-        ),
         (
             {"kind": "taper", "taper_angle": "20 deg", "corner_radius": "5 mm"},
             {"lead": "71 deg"},

@@ -17,6 +17,9 @@ BULL_NOSE = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, corner_radi
 END_MILL = Cutter(10e-3, (math.radians(30.0),) * 2, (math.pi,) * 2)
 #: a tapered ball end mill of 10 deg a side, 4 mm at the ball
 TAPERED = Cutter(4e-3, (math.radians(30.0),) * 2, (math.pi,) * 2, 2e-3, math.radians(80.0))
+#: a chamfer mill of 30 deg a side and a face mill of 45 deg, both with a sharp corner
+CHAMFER = Cutter(4e-3, (0.0,) * 2, (math.pi,) * 2, 0.0, math.radians(60.0))
+FACE_MILL = Cutter(10e-3, (0.0,) * 2, (math.pi,) * 2, 0.0, math.radians(45.0))
 DEPTH = 0.5e-3
 
 
@@ -29,12 +32,21 @@ def inside(cutter, rotation, points, shrunk=0.0):
     """Whether points (n, 3), m from the tip, lie within the body of the tool, smaller by a bit."""
     x, y, height = (rotation.inv().apply(points)).T
     out, corner = np.hypot(x, y), cutter.corner_radius
+    if cutter.edge_angle < 0.5 * math.pi and not corner:
+        return inside_cone(cutter, out, height, shrunk)
     if cutter.edge_angle < 0.5 * math.pi:
         return inside_tapered_ball(cutter, out, height, shrunk)
     beyond = out - (cutter.radius - corner)
     on_corner = np.hypot(np.maximum(beyond, 0.0), height - corner) < corner - shrunk
     below = np.where(beyond > 0.0, on_corner, height > shrunk)
     return np.where(height < corner, below, out < cutter.radius - shrunk)
+
+
+def inside_cone(cutter, out, height, shrunk):
+    """Above the flat end and within the cone that begins at its rim."""
+    half = 0.5 * math.pi - cutter.edge_angle
+    apart = (out - cutter.radius) * math.cos(half) - height * math.sin(half)
+    return (height > shrunk) & (apart < -shrunk)
 
 
 def inside_tapered_ball(cutter, out, height, shrunk):
@@ -98,6 +110,11 @@ def uncut(cutter, rotation, point, side, stepover, shrunk):
         (TAPERED, -20, 12, "down", 0.6e-3),
         (TAPERED, 0, 62, "up", 0.8e-3),
         (TAPERED, 8, -55, "down", 0.8e-3),
+        (CHAMFER, 6, 8, "up", 0.8e-3),
+        (CHAMFER, 0, -20, "down", 0.5e-3),
+        (CHAMFER, 25, 10, "slot", None),
+        (FACE_MILL, 2, 0, "down", 3e-3),
+        (FACE_MILL, 4, -6, "up", 4e-3),
     ],
 )
 def test_arcs_against_the_bodies_that_were_swept(cutter, lead, tilt, side, stepover):
@@ -221,6 +238,62 @@ def test_edges_of_a_tapered_ball_remove_what_its_outline_leaves(tilt, side):
     width = reach(leaning) + reach(-leaning)
     wanted = depth * np.mean(width if side == "slot" else np.minimum(width, step))
     assert found == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize(("tilt", "side"), [(8.0, "up"), (-8.0, "down"), (12.0, "slot")])
+def test_edges_of_a_tilted_cone_remove_what_its_outline_leaves(tilt, side):
+    """Seen along the feed the flat end rises by the tilt on one side, the flank on the other."""
+    axis, half = ToolAxis(0.0, math.radians(tilt)), math.radians(30.0)
+    step = None if side == "slot" else 0.8e-3
+    found = swept_section(InclinedEngagement(CHAMFER, axis, 0.3e-3, side, step))
+    z = 0.3e-3 * (np.arange(200000) + 0.5) / 200000
+    lean = abs(axis.tilt)
+    # from the lowest point on the rim: the flank on its side, the end on the other, both straight
+    # up to the depth of the cut: the end reaches up 4 mm sin(tilt), more than that depth
+    wide = z * math.tan(half + lean) + z / math.tan(lean)
+    wanted = 0.3e-3 * np.mean(wide if step is None else np.minimum(wide, step))
+    assert found == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize("cutter", [CHAMFER, FACE_MILL])
+def test_a_cone_that_hardly_leads_cuts_what_an_upright_one_does(cutter):
+    """Beside a wall at its rim, whose width grows with the cone: by hand."""
+    wide = 1e-3
+    axis = ToolAxis(1e-7, 0.0)
+    engaged = InclinedEngagement(cutter, axis, DEPTH, "up", None, wide)
+    taper = math.tan(0.5 * math.pi - cutter.edge_angle)
+    wanted = DEPTH * (wide + 0.5 * DEPTH * taper)
+    assert swept_section(engaged) == pytest.approx(wanted, rel=1e-3)
+
+
+@pytest.mark.parametrize(("lead", "tilt", "side"), [(0.0, 1e-7, "up"), (9.0, 0.0, "down")])
+def test_a_tapered_ball_beside_a_wall(lead, tilt, side):
+    """The wall counts from the outermost point of the ball; the cone above reaches further.
+
+    Leading, its outline across the feed is that of an upright cone of another angle.
+    """
+    wide, depth = 0.6e-3, 2.6e-3
+    axis = ToolAxis(math.radians(lead), math.radians(tilt))
+    engaged = InclinedEngagement(TAPERED, axis, depth, side, None, wide)
+    z, corner = depth * (np.arange(200000) + 0.5) / 200000, TAPERED.corner_radius
+    # seen along the feed: the flank touches the ball where its normal, turned by the lead, does
+    half = 0.5 * math.pi - TAPERED.edge_angle
+    seen = math.atan(math.tan(half) * _outline_factor(half, engaged.axis.lead))
+    tangent = corner * (1.0 - math.sin(seen))
+    on_ball = np.sqrt(np.maximum(corner**2 - (corner - z) ** 2, 0.0))
+    on_flank = corner * math.cos(seen) + (z - tangent) * math.tan(seen)
+    reach = np.where(z < tangent, on_ball, on_flank)
+    wanted = depth * np.mean(np.clip(reach - (corner - wide), 0.0, None))
+    assert swept_section(engaged) == pytest.approx(wanted, rel=2e-3)
+
+
+def _outline_factor(half, lead):
+    """Growth of tan(half) of a cone whose axis leans by the lead along the line of sight.
+
+    The cone y^2 + x^2 = (tan(half) h)^2 about the axis (sin lead, cos lead): its outline is where
+    a line along x touches it, y = z tan(half)/sqrt(cos^2 lead - tan^2(half) sin^2 lead).
+    """
+    return 1.0 / math.sqrt(math.cos(lead) ** 2 - (math.tan(half) * math.sin(lead)) ** 2)
 
 
 def test_no_edge_reaches_down_above_the_top():
