@@ -18,10 +18,11 @@ def main() -> None:
     options.add_argument("--count", type=int, default=300)
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--kinds", nargs="+", choices=KINDS, default=["frf", "axis", "stability"])
+    options.add_argument("--processes", type=int, default=1, help="sets explained at once")
     options.add_argument("--report", action="store_true", help="of what was answered already")
     given = options.parse_args()
     if not given.report:
-        for one in surveyed(given.out, given.kinds, given.count, given.seed):
+        for one in surveyed(given.out, given.kinds, given.count, given.seed, given.processes):
             names = [effect["name"] for effect in one["effects"]]
             print(
                 f"{one['kind']} {one['number']}: {one['truth'] or 'none'} -> {one['verdict']} "

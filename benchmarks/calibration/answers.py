@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import importlib
 import json
+import multiprocessing
+import os
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +37,7 @@ def answer_of(kind: str, number: int, seed: int) -> Answer:
             "seed": seed,
             "truth": truth["effects"],
             "true_verdict": truth["verdict"],
+            "expected": truth.get("expected", {}),
             **_said(out / truth_file.parent.name),
         }
 
@@ -47,12 +52,15 @@ def _said(place: Path) -> Answer:
         "verdict": found["verdict"],
         "effects": [_named(one) for one in found["effects"]],
         "partial": [_named(one) for one in found["partial"]],
+        "error": found["error"],
         "seconds": round(time.process_time() - begun, 2),
     }
 
 
 def _named(effect: Answer) -> Answer:
-    return {key: effect[key] for key in ("name", "probability", "confounded_with")}
+    parameters = {name: one["value"] for name, one in effect.get("parameters", {}).items()}
+    named = {key: effect[key] for key in ("name", "probability", "confounded_with")}
+    return {**named, "parameters": parameters}
 
 
 def read_answers(file: Path) -> list[Answer]:
@@ -62,16 +70,40 @@ def read_answers(file: Path) -> list[Answer]:
     return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line]
 
 
-def surveyed(out: Path, kinds: Sequence[str], count: int, seed: int) -> Iterator[Answer]:
+def surveyed(
+    out: Path, kinds: Sequence[str], count: int, seed: int, processes: int = 1
+) -> Iterator[Answer]:
     """Answer what is not answered yet: the kinds by turns, `count` sets in all."""
     out.mkdir(parents=True, exist_ok=True)
     file = out / "answers.jsonl"
     known = {(one["kind"], one["number"], one["seed"]) for one in read_answers(file)}
-    for place in range(count):
-        kind, number = kinds[place % len(kinds)], place // len(kinds) + 1
-        if (kind, number, seed) in known:
-            continue
-        answer = answer_of(kind, number, seed)
+    asked = [(kinds[place % len(kinds)], place // len(kinds) + 1, seed) for place in range(count)]
+    asked = [one for one in asked if one not in known]
+    for answer in _answers(asked, processes):
         with file.open("a", encoding="utf-8") as lines:
             lines.write(json.dumps(answer) + "\n")
         yield answer
+
+
+def _answers(asked: Sequence[tuple[str, int, int]], processes: int) -> Iterator[Answer]:
+    """Answers as they come, of several sets at once where there are several processes."""
+    if processes == 1:
+        yield from (answer_of(*one) for one in asked)
+        return
+    context = multiprocessing.get_context("spawn")
+    started = context.Value("i", 0)
+    pool = ProcessPoolExecutor(processes, context, _on_own_core, (started,))
+    try:
+        for done in as_completed([pool.submit(answer_of, *one) for one in asked]):
+            yield done.result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _on_own_core(started: Synchronized) -> None:
+    """Keep a process to one of the cores, so that its threads do not crowd the others."""
+    with started.get_lock():
+        number, started.value = started.value, started.value + 1
+    if hasattr(os, "sched_setaffinity"):
+        cores = sorted(os.sched_getaffinity(0))
+        os.sched_setaffinity(0, {cores[number % len(cores)]})

@@ -452,7 +452,9 @@ def explain(
         verdict = verdict_of(found)
         is_settled = verdict in (EXPLAINED, NOTHING_MISSING)
         terms = None if is_settled else _learnt(found, verdict, progress)
-    return Explanation(prepared, found, verdict, predictions, usable.findings, terms)
+    # errors, as the search, behind the filter that the records have
+    shown = kind.with_filter_by(prepared, found.problem.case(found.of_fitted.by_name))
+    return Explanation(shown, found, verdict, predictions, usable.findings, terms)
 
 
 def _learnt(found: Search, verdict: str, progress: Progress) -> Learnt | None:

@@ -34,7 +34,7 @@ class Predictions:
         self.kind = kind.keeping(self.kept)
         self._digests: dict[int, tuple[Run, str]] = {}
         self.made = 0
-        self._kept: OrderedDict[tuple[str, int], tuple[Run, Signals]] = OrderedDict()
+        self._kept: OrderedDict[tuple[str, int, str], tuple[Run, Signals]] = OrderedDict()
         self._bytes = 0
         self._lock = Lock()
         self._coarse: dict[int, tuple[Run, Mapping[str, Any]]] = {}
@@ -47,7 +47,7 @@ class Predictions:
         whole = run.whole or run
         own = self.kind.reduced(whole.of(case), whole)
         # a run with other weights is predicted alike
-        key = (own.content, id(whole.signals))
+        key = (own.content, id(whole.signals), self.kind.predicted_as(whole))
         with self._lock:
             kept = self._kept.get(key)
             if kept is not None:
@@ -77,7 +77,8 @@ class Predictions:
         """Predict a whole run, or read what is kept of it."""
         if not self.kind.stands_alone(whole):
             return self.kind.predict(own, whole)
-        inputs = f"{whole.kind} {whole.name} {self._digest_of(whole)} {own.content}"
+        told = self.kind.predicted_as(whole)
+        inputs = f"{whole.kind} {whole.name} {self._digest_of(whole)} {own.content} {told}"
         return self.kept.made(inputs, lambda: self.kind.predict(own, whole))
 
     def _digest_of(self, whole: Run) -> str:
@@ -90,7 +91,7 @@ class Predictions:
                 self._digests[id(whole.signals)] = known
         return known[1]
 
-    def _keep(self, key: tuple[str, int], whole: Run, found: Signals) -> None:
+    def _keep(self, key: tuple[str, int, str], whole: Run, found: Signals) -> None:
         with self._lock:
             self.made += 1
             if key in self._kept:

@@ -185,6 +185,16 @@ class Kind(ABC):
         """Return the measurement with weights by a case that was found; unchanged by default."""
         return measurement
 
+    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with the filter of its records by a case; unchanged by default."""
+        del case
+        return measurement
+
+    def predicted_as(self, run: Run) -> str:
+        """What a prediction of a run depends on beside the case and the signals; nothing."""
+        del run
+        return ""
+
     def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Residuals of all channels of a run, scaled to a standard deviation of one."""
         return np.concatenate(

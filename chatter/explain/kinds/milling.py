@@ -20,6 +20,7 @@ from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
 from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.anti_alias_filter import with_filter_by
 from chatter.explain.records.beginning import beginning_of
 from chatter.explain.records.description import REST
 from chatter.explain.records.from_rest import from_rest
@@ -134,6 +135,15 @@ class Milling(Kind):
         if isinstance(run.record, SteadyRecord):
             return run.record.predicted(case)
         return from_rest(case, run)
+
+    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with the order of its anti-alias filter by a case."""
+        return with_filter_by(measurement, case)
+
+    def predicted_as(self, run: Run) -> str:
+        """Order of the filter of a settled record."""
+        record = run.record
+        return f"filter {record.recorded.order}" if isinstance(record, SteadyRecord) else ""
 
     def known_noise(self, run: Run) -> Mapping[str, float]:
         """Standard deviation of channels whose noise the records tell."""

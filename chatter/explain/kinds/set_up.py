@@ -118,6 +118,14 @@ class SetUp(Kind):
         """Return the measurement with the weights of its kinds by a case that was found."""
         return self._by_kind(measurement, lambda kind, part: kind.reweighted(part, case))
 
+    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with the filters of the records of its kinds by a case."""
+        return self._by_kind(measurement, lambda kind, part: kind.with_filter_by(part, case))
+
+    def predicted_as(self, run: Run) -> str:
+        """What a prediction depends on, as the kind of the run has it."""
+        return self._of(run).predicted_as(run)
+
     def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Residuals of a run as its kind scales them."""
         return self._of(run).residuals(run, predicted, noise)

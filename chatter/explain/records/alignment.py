@@ -21,8 +21,8 @@ Complex = NDArray[np.complex128]
 #: sampling frequency over the corner frequency of the anti-alias filter: where the search begins,
 #: as is usual, and largest; zero is no filter
 USUAL_FILTER, _LOWEST_FILTER = 2.5, 6.0
-#: twice the damping ratios of the poles of a Butterworth filter of fourth order
-_DAMPED = (2.0 * math.cos(math.pi / 8.0), 2.0 * math.sin(math.pi / 8.0))
+#: order of the filter until the records tell another, and orders that are built
+USUAL_ORDER, ORDERS = 4, (2, 4, 6, 8)
 #: angles of the scan, steps of the search, and changes below which it ends
 _SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-8
 #: highest order that is predicted, over the highest in the band: a usual filter leaves a hundredth
@@ -50,6 +50,7 @@ class Recorded:
     pitch: float  # smallest angle by which a tool may be turned unseen, rad
     angle: Array | None = None  # (n,) of the spindle, rad, where it is known
     expected: float | None = None  # angle in the middle of the record, where a tacho tells it
+    order: int = USUAL_ORDER  # of the anti-alias filter, a Butterworth filter
 
     @property
     def sampling(self) -> float:
@@ -119,7 +120,7 @@ class Recorded:
 
     def filtered(self, corner_ratio: float) -> Complex:
         """Anti-alias filter (M,) at the harmonics."""
-        return low_pass(self.frequency, corner_ratio, self.sampling)
+        return low_pass(self.frequency, corner_ratio, self.sampling, self.order)
 
     def drift(self, values: Array) -> Array:
         """Offset and drift (c, n) of values (c, n), from the usable samples."""
@@ -146,20 +147,32 @@ class Alignment:
     angle: Array  # (n,) of the spindle, zero where the first tooth is at +y, rad
     start: float  # angle in the middle of the record, rad
     corner: float  # frequency of the anti-alias filter, Hz; inf for none
+    misfit: float  # sum of squares of the harmonics that differ, over the deviations
 
 
-def low_pass(frequency: Array, corner_ratio: float, sampling: float) -> Complex:
-    """Fourth-order Butterworth filter at frequencies, Hz, by the sampling over the corner one."""
+def _damped(order: int) -> Array:
+    """Twice the damping ratios (order / 2,) of the poles of a Butterworth filter of even order."""
+    return 2.0 * np.sin((2.0 * np.arange(order // 2) + 1.0) * math.pi / (2.0 * order))
+
+
+def low_pass(
+    frequency: Array, corner_ratio: float, sampling: float, order: int = USUAL_ORDER
+) -> Complex:
+    """Butterworth filter at frequencies, Hz, by the sampling over the corner frequency."""
     s = 1j * frequency * corner_ratio / sampling
-    first, second = _DAMPED
-    return 1.0 / ((s * s + first * s + 1.0) * (s * s + second * s + 1.0))
+    found = np.ones(s.shape, dtype=np.complex128)
+    for damped in _damped(order):
+        found *= s * s + damped * s + 1.0
+    return 1.0 / found
 
 
-def _slope_of_low_pass(frequency: Array, corner_ratio: float, sampling: float) -> Complex:
+def _slope_of_low_pass(
+    frequency: Array, corner_ratio: float, sampling: float, order: int
+) -> Complex:
     """Change of the logarithm of the low pass with the sampling over the corner frequency."""
     rate = 1j * frequency / sampling
     s = rate * corner_ratio
-    return -rate * sum((2.0 * s + one) / (s * s + one * s + 1.0) for one in _DAMPED)
+    return -rate * sum((2.0 * s + one) / (s * s + one * s + 1.0) for one in _damped(order))
 
 
 def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
@@ -169,7 +182,8 @@ def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
     predicted = recorded.at(harmonics * filtered, found.start)
     predicted += recorded.drift(recorded.signals - predicted)
     corner = recorded.sampling / found.ratio if found.ratio > 0.0 else math.inf
-    return Alignment(predicted, recorded.turned + found.start, found.start, corner)
+    angle = recorded.turned + found.start
+    return Alignment(predicted, angle, found.start, corner, found.cost)
 
 
 class _Laid(NamedTuple):
@@ -190,7 +204,8 @@ def _found(harmonics: Complex, recorded: Recorded) -> _Laid:
     start, delay = 0.0, 0.0
     if recorded.angle is None:
         start = _scanned(scaled * recorded.filtered(USUAL_FILTER), recorded)
-        delay = sum(_DAMPED) * recorded.speed / (2.0 * math.pi * recorded.sampling)
+        delay = float(_damped(recorded.order).sum()) * recorded.speed
+        delay /= 2.0 * math.pi * recorded.sampling
     best, step = _step_from(scaled, recorded, _Laid(0.0, start, USUAL_FILTER), delay)
     for _ in range(_MOST_STEPS):
         ratio = min(max(best.ratio + step[1], 0.0), _LOWEST_FILTER)
@@ -211,7 +226,7 @@ def _step_from(scaled: Complex, recorded: Recorded, at: _Laid, delay: float) -> 
     turn = np.exp(1j * recorded.orders * at.start)
     now = scaled * recorded.filtered(at.ratio) * turn
     turned = 1j * recorded.orders
-    by_filter = _slope_of_low_pass(recorded.frequency, at.ratio, recorded.sampling)
+    by_filter = _slope_of_low_pass(recorded.frequency, at.ratio, recorded.sampling, recorded.order)
     rows = np.concatenate([now, now * turned, now * (by_filter + delay * turned)])
     shown, *slopes = np.split(recorded.folded(rows), 3)
     matrix = np.array([one.ravel() for one in slopes])

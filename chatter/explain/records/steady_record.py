@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +35,10 @@ class SteadyRecord:
     def knows_tooth(self) -> bool:
         """Whether it is known which tooth is where: by a tacho or a measured angle."""
         return self.recorded.angle is not None or self.recorded.expected is not None
+
+    def with_filter_of(self, order: int) -> "SteadyRecord":
+        """Same record behind an anti-alias filter of another order."""
+        return replace(self, recorded=replace(self.recorded, order=order))
 
     def aligned(self, case: Case) -> Alignment:
         """Prediction of a case with the overrides of the run, laid beside the record."""

@@ -32,7 +32,7 @@ from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.linearised_step import linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
-from chatter.explain.selection.split import Split
+from chatter.explain.selection.split import Split, split_runs
 
 #: times that members of families give way to richer ones
 _MOST_RICHER = 2
@@ -62,7 +62,7 @@ def best_path(begin: Path, first: Stage, split: Split, progress: Progress) -> Pa
 
     Of two effects that are missing, neither may do well alone, and a third best in their place.
     """
-    best = _forward(begin, first, split, progress, MOST_EFFECTS)
+    best = gone_on(begin, first, split, progress)
     if best.over_noise(split.holdout) < NEAR_NOISE:
         return best
     progress("fitting pairs of effects", 0.8)
@@ -77,19 +77,35 @@ def _better(one: Path, other: Path, problem: Problem, split: Split) -> Path:
     return one if gain > LEAST_EVIDENCE else other
 
 
-def _forward(begin: Path, stage: Stage, split: Split, progress: Progress, most: int) -> Path:
+def gone_on(begin: Path, stage: Stage, split: Split, progress: Progress) -> Path:
     """Add effects, the first as ranked by a stage, as long as holdout runs gain by them."""
-    stages, problem, now = [], begin.problem, begin.now
+    stages, problem, now = list(begin.stages), begin.problem, begin.now
     while stage.tried and is_significant(stage, stage.best, problem, split):
         stages.append(stage)
         values = stage.best.fit.by_name
         problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
         now = problem.fit(split.fitted, values)
         path = Path(stages, problem, now)
-        if len(stages) == most or path.over_noise(split.holdout) < NO_RESIDUAL:
+        if len(stages) == MOST_EFFECTS or path.over_noise(split.holdout) < NO_RESIDUAL:
             break
         stage = stage_of(problem, now, split, progress, len(stages))
     return Path(stages, problem, now)
+
+
+def filtered(path: Path, split: Split) -> tuple[Path, Split]:
+    """Path with the filter of the records as its case tells it, and its runs; itself if as it is.
+
+    Effects stay, and their stages as they were found.
+    """
+    problem, values = path.problem, path.now.by_name
+    measurement = problem.kind.with_filter_by(problem.measurement, problem.case(values))
+    if measurement is problem.measurement:
+        return path, split
+    split = split_runs(measurement)
+    problem = replace(problem, measurement=measurement)
+    now = problem.fit(split.fitted, values)
+    problem = problem.with_noise_beside(now.by_name)
+    return Path(path.stages, problem, problem.fit(split.fitted, now.by_name)), split
 
 
 def _pairs(begin: Path, first: Stage, best: Path, split: Split) -> list[Path]:

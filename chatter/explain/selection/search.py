@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from chatter.explain.criteria import OUT_OF_TOLERANCE
+from chatter.explain.criteria import MOST_EFFECTS, NO_RESIDUAL, OUT_OF_TOLERANCE
 from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
@@ -18,7 +18,7 @@ from chatter.explain.selection.established import (
     stages_of_kept_effects,
 )
 from chatter.explain.selection.one_for_two import one_for_two
-from chatter.explain.selection.path import Path, best_path, richer, tried_again
+from chatter.explain.selection.path import Path, best_path, filtered, gone_on, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
 
@@ -103,12 +103,14 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     now = problem.fit(split.fitted, begin)
     problem = problem.with_noise_beside(now.by_name)
     now = problem.fit(split.fitted, now.by_name)
-    base_values = now.by_name
-    first = stage_of(problem, now, split, progress, 0)
-    path = best_path(Path([], problem, now), first, split, progress)
+    path, split = filtered(Path([], problem, now), split)
+    problem, base_values = path.problem, path.now.by_name
+    first = stage_of(problem, path.now, split, progress, 0)
+    path = best_path(path, first, split, progress)
     if len(path.stages) > 1:
         progress("trying again the effects added first", 0.85)
         path = one_for_two(tried_again(path, split), split, progress)
+    path, split = _gone_on_filtered(path, split, progress)
     path, split, final = _to_all_runs(path, split, progress)
     if path.stages and not is_at_noise(path.problem, final):
         before, path = path, richer(path, split, progress)
@@ -123,10 +125,27 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     elif path.stages and reaches_nothing(path, final) is not None:
         path, final = _without_nothing(path, final, split)
     path = stages_of_kept_effects(path, split)
-    base = replace(path.problem, effects=()).fit(measurement.runs, base_values)
+    shown = kind.with_filter_by(measurement, path.problem.case(path.now.by_name))
+    base = replace(path.problem, effects=()).fit(shown.runs, base_values)
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base
     )
+
+
+def _gone_on_filtered(path: Path, split: Split, progress: Progress) -> tuple[Path, Split]:
+    """Path that was gone on with where the case found tells another filter of the records.
+
+    What was chosen behind the wrong filter is asked for again, and what that hid is sought.
+    """
+    progress("looking at the filter of the records", 0.855)
+    found, split = filtered(path, split)
+    if found is path or not found.stages:
+        return found, split
+    found = tried_again(found, split)
+    if len(found.stages) == MOST_EFFECTS or found.over_noise(split.holdout) < NO_RESIDUAL:
+        return found, split
+    stage = stage_of(found.problem, found.now, split, progress, len(found.stages))
+    return gone_on(found, stage, split, progress), split
 
 
 def _nearest_start(problem: Problem, split: Split) -> dict[str, float]:

@@ -15,6 +15,7 @@ from chatter.description.errors import InputError
 from chatter.explain.checking import checked
 from chatter.explain.comparison import compare
 from chatter.explain.data_checks.finding import NOTE, RUN
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.alignment import Recorded, aligned, low_pass
 from chatter.explain.records.case_axes import in_case_axes
@@ -55,6 +56,7 @@ direction = [0, 1, 0]
 CUTS = ((2000.0, 6e-3, 5.31), (2270.0, 9e-3, 6.77), (1710.0, 4.5e-3, 4.12))
 TRUE_SPEED, NOISE = 1.003, 0.01
 TURNED = math.radians(25.0)
+CORNER = 3400.0
 
 
 @pytest.fixture(scope="module")
@@ -410,3 +412,42 @@ def test_what_the_filter_lets_pass_above_the_band_is_predicted():
     in_band = filtered * (orders <= recorded.in_band)
     missed = np.real(in_band @ np.exp(1j * np.outer(orders, speed * time + 0.3))) - signal
     assert np.std(missed) > 0.1 * np.std(signal)
+
+
+@pytest.mark.parametrize("order", [2, 6, 8])
+def test_low_passes_of_any_order_are_those_of_butterworth(order):
+    frequency = np.linspace(10.0, 9e3, 50)
+    b, a = scipy.signal.butter(order, TURN * 3600.0, analog=True)
+    expected = scipy.signal.freqs(b, a, TURN * frequency)[1]
+    assert low_pass(frequency, 1e4 / 3600.0, 1e4, order) == pytest.approx(expected, rel=1e-9)
+
+
+def behind_a_filter(order):
+    """Cuts recorded at 10 kHz behind scipy's low pass of an order at 3.4 kHz."""
+    low_pass_of_it = scipy.signal.butter(order, CORNER, fs=40e3, output="sos")
+    noise = np.random.default_rng(order)
+    found = []
+    for rpm, radial, kept in CUTS:
+        speed = rpm * TURN / 60.0
+        cut = Cut(speed, 0.08e-3, 0.6e-3, radial, *arc_of("down", radial, 10e-3), 0.0)
+        signals = run(plant(), cut, (kept + 9.0) * TURN / speed, sampling=40e3)
+        rows = scipy.signal.sosfilt(low_pass_of_it, signals.channels, axis=1)
+        first = int(kept * TURN / speed * 40e3)
+        rows = rows[:, first::4]
+        rows = rows + 0.005 * rows.std(axis=1)[:, None] * noise.standard_normal(rows.shape)
+        time = signals.time[first::4] - signals.time[first]
+        found.append((time, rows, signals.angle[first::4], speed))
+    return found
+
+
+@pytest.mark.parametrize("order", [4, 8])
+def test_the_order_of_the_filter_is_told_by_all_the_records(case, order, tmp_path):
+    """Another order is taken only where it fits all the records together clearly better."""
+    record = RecordDescription("cut", "unknown", 0.005)
+    made = measurement(case, behind_a_filter(order), tmp_path, as_in_the_case, record)
+    usable = checked(made).measurement
+    found = KINDS["milling"].with_filter_by(usable, case)
+    assert {run.record.recorded.order for run in found.runs} == {order}
+    assert (found is usable) == (order == 4)
+    for one in found.runs:
+        assert one.record.aligned(one.of(case)).corner == pytest.approx(CORNER, rel=0.03)
