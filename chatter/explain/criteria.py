@@ -16,13 +16,16 @@ LEAST_GAIN, LEAST_GAIN_SHARE = 40.0, 0.004
 #: the same share for an effect beside others: a change of a tenth of the noise, which is no more
 #: than what a refit of the others leaves by chance
 LEAST_GAIN_SHARE_BESIDE = 0.01
+#: the same share of FRFs: a structure is not so exactly a sum of modes, nor a hammer so exact, that
+#: a fifth of the scatter, seen over thousands of lines, would be an effect
+LEAST_GAIN_SHARE_OF_FRFS = 0.05
 #: logarithm of the evidence, over that without it, from which on an effect is added, and from which
 #: on it is beyond doubt though something else is left: odds of 400 and of 20000, as some twenty
 #: effects are tried
 LEAST_EVIDENCE, CERTAIN_EVIDENCE = 6.0, 10.0
 #: share of the misfit above the noise that an effect beyond doubt takes away where something else
-#: is left: effects that stood for others of the unlisted took away a fifth at the most
-LEAST_SHARE_IN_PART = 0.15
+#: is left: effects that stood for others of the unlisted took away a third
+LEAST_SHARE_IN_PART = 0.4
 #: sum of squares of holdout runs over that without an effect, from which on it is not one
 MOST_LOST = 1.02
 #: level of the signed-rank test of the runs that gain by such an effect against those that lose

@@ -4,26 +4,18 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free
+from chatter.explain.effects.resembling_modes import resembling_modes
 from chatter.explain.effects.structure import has_modes, stiffness_of
 from chatter.explain.fitting import Parameter
-from chatter.explain.measurement import Measurement, Run
-from chatter.simulation.simulate import through_resonance
+from chatter.explain.measurement import Measurement
 
-Array = NDArray[np.float64]
-
-#: natural frequencies tried, from and to which share of the known ones, and damping ratios
-_TRIED, _LOWEST, _HIGHEST = 80, 0.3, 2.5
-_DAMPING = (0.01, 0.03, 0.08)
 #: compliance of a mode that is not small, as a share of that of the most compliant known one
 _SIZABLE = 0.5
-#: modes that are proposed, further apart than a share of their frequency
-_PROPOSED, _APART = 2, 0.15
-#: samples of a run that are looked at: a run begins at rest, and so does every mode
-_MOST_SAMPLES = 6000
+#: lowest and highest natural frequency, Hz
+_LOWEST, _HIGHEST = 5.0, 2e4
 
 
 class MissingMode(Effect):
@@ -42,8 +34,9 @@ class MissingMode(Effect):
         """Frequency, damping, compliance and direction; no compliance: no mode."""
         modes = measurement.case.structure.mode
         compliance = max(1.0 / stiffness_of(m.frequency, m.modal_mass) for m in modes)
+        lowest, highest = _band(measurement)
         return [
-            free("frequency", 300.0, 5.0, "Hz", lower=5.0, upper=2e4),
+            free("frequency", 300.0, 5.0, "Hz", lower=lowest, upper=highest),
             Parameter("damping", 0.03, 0.01, 0.002, 0.3, True, ""),
             free("compliance", 0.01 * compliance, 0.02 * compliance, "m/N", lower=0.0),
             free("angle", 0.0, 0.3, "rad"),
@@ -85,7 +78,7 @@ class MissingMode(Effect):
     def proposed(
         self, measurement: Measurement, predicted: Mapping[str, Signals]
     ) -> Sequence[Values]:
-        """Modes whose answer to the forces resembles what is left of the displacements."""
+        """Modes whose answer to the forces resembles what is left of displacements or FRFs."""
         return resembling_modes(measurement, predicted)
 
     def reported(self, values: Values) -> Reported:
@@ -103,76 +96,15 @@ class MissingMode(Effect):
         return 1.0 / compliance / (2.0 * math.pi * float(values["frequency"])) ** 2
 
 
-def resembling_modes(
-    measurement: Measurement, predicted: Mapping[str, Signals]
-) -> list[dict[str, float]]:
-    """Modes whose answer to the predicted forces takes most of the residual displacement away.
+def _band(measurement: Measurement) -> tuple[float, float]:
+    """Frequencies between which a mode is sought, Hz: where all are FRFs, those measured.
 
-    Predicted signals are by run. A mode of compliance c along a unit vector d moves the tool by
-    c d (d . q) where q is the force through an oscillator of unit stiffness: linear in the three
-    products c dx dx, c dx dy and c dy dy, which are fitted. What the motion changes in the chip is
-    left to the simulation. None where there are no displacements from rest.
+    Of a mode beyond them an FRF shows no more than a stiffness or a mass.
     """
-    runs = [run for run in measurement.runs if run.record is None and _moves(run)]
-    if not runs or not predicted:
-        return []
-    parts = [_Part(run, predicted[run.name]) for run in runs]
-    known = sorted(mode.frequency for mode in measurement.case.structure.mode)
-    found = []
-    for frequency in np.geomspace(_LOWEST * known[0], _HIGHEST * known[-1], _TRIED):
-        for damping in _DAMPING:
-            gain, products = _best_products(parts, float(frequency), damping)
-            size, vectors = np.linalg.eigh(products)
-            if size[1] > 0.0:
-                found.append((gain, float(frequency), damping, float(size[1]), vectors[:, 1]))
-    found.sort(key=lambda entry: -entry[0])
-    chosen: list[dict[str, float]] = []
-    for _, frequency, damping, compliance, direction in found:
-        if all(abs(frequency / one["frequency"] - 1.0) > _APART for one in chosen):
-            angle = math.atan2(direction[1], direction[0])
-            chosen.append(
-                {"frequency": frequency, "damping": damping, "compliance": compliance,
-                 "angle": angle}
-            )  # fmt: skip
-        if len(chosen) == _PROPOSED:
-            break
-    return chosen
-
-
-def _moves(run: Run) -> bool:
-    return "x" in run.signals and "y" in run.signals
-
-
-class _Part:
-    """Residual displacements of a run over their level, and the forces that were predicted."""
-
-    def __init__(self, run: Run, predicted: Signals) -> None:
-        size = min(run.signals["time"].size, _MOST_SAMPLES)
-        self.step = run.step
-        self.force = np.column_stack([predicted[name][:size] for name in ("Fx", "Fy")])
-        self.level = [float(np.std(run.signals[name])) + 1e-30 for name in ("x", "y")]
-        self.residual = [
-            (run.signals[name] - predicted[name])[:size] / level
-            for name, level in zip(("x", "y"), self.level, strict=True)
-        ]
-
-    def normal(self, frequency: float, damping: float) -> tuple[Array, Array]:
-        """Normal matrix (3, 3) and right side (3,) of the products of a mode."""
-        q = through_resonance(self.force, frequency, damping, self.step)
-        zero = np.zeros(len(q))
-        matrix, right = np.zeros((3, 3)), np.zeros(3)
-        columns = ((q[:, 0], q[:, 1], zero), (zero, q[:, 0], q[:, 1]))
-        for residual, level, three in zip(self.residual, self.level, columns, strict=True):
-            scaled = np.column_stack(three) / level
-            matrix += scaled.T @ scaled
-            right += scaled.T @ residual
-        return matrix, right
-
-
-def _best_products(parts: Sequence[_Part], frequency: float, damping: float) -> tuple[float, Array]:
-    """Fall of the sum of squares by a mode, and its compliance times directions (2, 2), m/N."""
-    normals = [part.normal(frequency, damping) for part in parts]
-    matrix = np.sum([one for one, _ in normals], axis=0)
-    right = np.sum([one for _, one in normals], axis=0)
-    xx, xy, yy = np.linalg.pinv(matrix, hermitian=True) @ right
-    return float(right @ np.array([xx, xy, yy])), np.array([[xx, xy], [xy, yy]])
+    lines = [run.signals.get("frequency") for run in measurement.runs]
+    if not lines or any(one is None for one in lines):
+        return _LOWEST, _HIGHEST
+    return (
+        max(_LOWEST, *(float(one.min()) for one in lines)),
+        min(_HIGHEST, *(float(one.max()) for one in lines)),
+    )

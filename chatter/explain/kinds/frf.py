@@ -11,6 +11,7 @@ from chatter.compile.structure import structure_of
 from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.description.sections.tool import Tool
+from chatter.explain.criteria import LEAST_GAIN, LEAST_GAIN_SHARE_OF_FRFS
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
 from chatter.explain.fitting import Parameter, with_priors
@@ -43,6 +44,7 @@ class FrequencyResponse(Kind):
     sections = ("structure",)
     columns = (("frequency",), ("real",), ("imag",))
     estimates_noise = False
+    least_gain = (LEAST_GAIN, LEAST_GAIN_SHARE_OF_FRFS)
     diagnostics = (by_condition, over_lines)
     checks = (
         sample_checks(Columns(_CHANNELS, needed=_CHANNELS)),

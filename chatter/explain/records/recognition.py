@@ -32,8 +32,8 @@ Array = NDArray[np.float64]
 
 #: noise that is assumed, as a share of a channel, at the least
 _LEAST_NOISE = 5e-3
-#: unsteadiness of a run that is no settled cut, and times that of the others
-_UNSTEADY, _MORE_UNSTEADY = 0.12, 4.0
+#: unsteadiness and drift of a run that is no settled cut, and times those of the others
+_UNSTEADY, _DRIFTING, _MORE_UNSTEADY = 0.06, 0.04, 4.0
 #: share of the records that must be predicted for an orientation, and by which it beats others
 _LEAST_SHARE, _CLEARER = 0.3, 0.05
 #: length of the mean of what a tacho tells against what the cut tells, from which they agree
@@ -211,19 +211,21 @@ _LEAST_AIR = 20
 def _without_unsteady(settled: Sequence[_Settled]) -> tuple[list[_Settled], list[SignalFinding]]:
     """Runs whose cut settles, where most do."""
     typical = float(np.median([one.stages.unsteadiness for one in settled]))
-    limit = max(_UNSTEADY, _MORE_UNSTEADY * typical)
+    drift = float(np.median([one.stages.drift for one in settled]))
     kept, found = [], []
     for one in settled:
-        unsteady = one.stages.unsteadiness
-        if unsteady <= limit:
+        unsteady, drifting = one.stages.unsteadiness, one.stages.drift
+        if unsteady > max(_UNSTEADY, _MORE_UNSTEADY * typical):
+            words = f"{100.0 * unsteady:.0f} % of the signal does not repeat with the revolution"
+            others = f"{100.0 * typical:.1f} %: the cut chatters or has not settled"
+        elif drifting > max(_DRIFTING, _MORE_UNSTEADY * drift):
+            words = f"{100.0 * drifting:.0f} % of the signal changes over what repeats best"
+            others = f"{100.0 * drift:.1f} %: the cut has not settled or beats"
+        else:
             kept.append(one)
             continue
-        description = (
-            f"{one.run.name}: {100.0 * unsteady:.0f} % of the signal does not repeat with the "
-            f"revolution, of the other runs {100.0 * typical:.1f} %: the cut chatters or has not "
-            "settled"
-        )
-        found.append(SignalFinding(RUN, one.run.name, "", description))
+        words = f"{one.run.name}: {words}, of the other runs {others}"
+        found.append(SignalFinding(RUN, one.run.name, "", words))
     return kept, found
 
 

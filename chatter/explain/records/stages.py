@@ -18,7 +18,7 @@ _CONTACT = 0.5
 _APART = 3.0
 #: deviation from the settled revolutions, over that among these, from which one is not settled,
 #: and least one, as a share of the signal
-_UNSETTLED, _LEAST_UNSETTLED = 1.8, 0.05
+_UNSETTLED, _LEAST_UNSETTLED = 1.8, 0.03
 #: revolutions, and samples, of the settled part, at the least and at the most
 _LEAST_REVOLUTIONS, _MOST_SAMPLES = 4, 6000
 
@@ -30,6 +30,8 @@ class Stages(NamedTuple):
     leave: int  # sample after the last in contact
     settled: slice
     unsteadiness: float  # rms of what does not repeat with the revolution, over that which does
+    #: rms of the change from the first half of the settled part to the second, over the signal
+    drift: float
 
     def description(self, time: Array) -> str:
         """Stages in words."""
@@ -46,11 +48,14 @@ def stages_of(case: Case, time: Array, signals: Array, begins: str) -> Stages:
     """Stages of a record of channels (c, n) by the case of the run, with its true speed."""
     step = float(time[-1] - time[0]) / (time.size - 1)
     turn = 2.0 * math.pi / case.cut.spindle_speed
-    entry, leave = 0, time.size
-    if begins == AIR:
-        entry, leave = _contact(signals, max(int(turn / step), 4))
+    entry, leave, latest = 0, time.size, 0
     ramp = int(_entry_travel(case) / _feed_speed(case) / step)
-    first = min(entry + ramp, leave) if entry > 0 else entry
+    if begins == AIR:
+        window = max(int(turn / step), 4)
+        entry, leave = _contact(signals, window)
+        # a contact within the first revolution is not seen: it is the end of it at the latest
+        latest = (entry or window) + ramp
+    first = min(latest, leave)
     last = max(leave - ramp, 0) if leave < time.size else leave
     if (last - first) * step < _LEAST_REVOLUTIONS * turn:
         first, last = entry, leave
@@ -60,7 +65,8 @@ def stages_of(case: Case, time: Array, signals: Array, begins: str) -> Stages:
     size = min(max(round(whole * turn / step), 1) if whole else last - first - begin, most)
     if size == most and whole:
         size = round(max(int(most * step / turn), 1) * turn / step)
-    return Stages(entry, leave, slice(last - size, last), unsteadiness)
+    settled = slice(last - size, last)
+    return Stages(entry, leave, settled, unsteadiness, _drift(signals[:, settled], turn / step))
 
 
 def _contact(signals: Array, window: int) -> tuple[int, int]:
@@ -102,18 +108,37 @@ def _feed_speed(case: Case) -> float:
     return max(cut.feed_per_tooth * case.tool.teeth * cut.spindle_speed / (2.0 * math.pi), 1e-12)
 
 
-def _settled_from(signals: Array, turn: float) -> tuple[int, float]:
-    """First sample from which channels (c, n) repeat with a revolution of that many samples."""
+def _revolutions(signals: Array, turn: float) -> Array:
+    """Channels (c, n) by whole revolutions (c, r, p), the last at the end, means taken off.
+
+    Over the deviations of the channels.
+    """
     count = signals.shape[1]
     whole = int((count - 1) / turn)
-    if whole < 2:
-        return 0, 0.0
     points = max(int(turn), 8)
-    begin = count - 1 - whole * turn
-    at = begin + (np.arange(whole)[:, None] + np.arange(points) / points) * turn
+    at = count - 1 - whole * turn
+    at = at + (np.arange(whole)[:, None] + np.arange(points) / points) * turn
     rows = np.array([np.interp(at, np.arange(count), row) for row in signals])
     rows -= rows.mean(axis=2, keepdims=True)
-    rows /= np.maximum(np.std(signals, axis=1), 1e-300)[:, None, None]
+    return rows / np.maximum(np.std(signals, axis=1), 1e-300)[:, None, None]
+
+
+def _drift(signals: Array, turn: float) -> float:
+    """Change of channels (c, n) from the first half of the revolutions to the second, by rms."""
+    rows = _revolutions(signals, turn)
+    half = rows.shape[1] // 2
+    if half < 1:
+        return 0.0
+    change = rows[:, -half:].mean(axis=1) - rows[:, :half].mean(axis=1)
+    return math.sqrt(float(np.mean(change**2)))
+
+
+def _settled_from(signals: Array, turn: float) -> tuple[int, float]:
+    """First sample from which channels (c, n) repeat with a revolution of that many samples."""
+    rows = _revolutions(signals, turn)
+    whole = rows.shape[1]
+    if whole < 2:
+        return 0, 0.0
     tail = max(2, whole // 3)
     steady = rows[:, -tail:].mean(axis=1)
     level = math.sqrt(float(np.mean(steady**2))) + 1e-300
@@ -123,5 +148,6 @@ def _settled_from(signals: Array, turn: float) -> tuple[int, float]:
     unsettled = np.flatnonzero(away[: whole - min(tail, whole)] > limit)
     first = int(unsettled[-1]) + 1 if unsettled.size else 0
     first = min(first, max(whole - _LEAST_REVOLUTIONS, 0))
+    begin = signals.shape[1] - 1 - whole * turn
     start = 0 if first == 0 else math.ceil(begin + first * turn)
     return start, typical

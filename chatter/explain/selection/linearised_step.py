@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import FOLLOWED_STARTS, OUT_OF_TOLERANCE, SCREENED_STARTS
+from chatter.explain.criteria import FOLLOWED_STARTS, SCREENED_STARTS
 from chatter.explain.effects.effect import Effect, Values
 from chatter.explain.fitting import WORKERS, Fit, Parameter
 from chatter.explain.measurement import Run
@@ -21,6 +21,8 @@ _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
 _KEPT_PROMISE = 0.5
 #: starts with the declared values put back of which a linearised step is made
 _SIZABLE_STARTS = 3
+#: standard deviations by which a declared value is drawn where a mode may stand beside another
+_DRAWN = 2.0
 #: weight of a linearised step on parameters without a prior, which keeps it finite
 WEAK_PRIOR = 1e-3
 
@@ -97,7 +99,7 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
     secants = _Secants(trial, now, runs, amounts)
     begins = secants.best([values_at(start) for start in effect.starts(own)], SCREENED_STARTS)
-    if any(abs(pull) > OUT_OF_TOLERANCE for pull in now.pulls.values()):
+    if any(abs(pull) > _DRAWN for pull in now.pulls.values()):
         declared = {one.name: one.start for one in now.parameters if one.prior}
         sizable = [values_at(start) | declared for start in effect.sizable_starts(own)]
         begins += secants.best(sizable, _SIZABLE_STARTS)

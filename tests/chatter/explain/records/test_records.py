@@ -317,6 +317,37 @@ def test_stages_are_recognised(case):
     assert 0.35 < time[stages.settled.start] < time[stages.settled.stop] < 0.95
 
 
+def a_cut_that_begins(case, contact):
+    """Time and signals of a cut that grows for 0.2 s, over the entry, from a contact on."""
+    time = np.arange(6000) * 1e-4
+    turn = TURN / case.cut.spindle_speed
+    size = np.interp(time, [contact, contact + 0.2], [0.2, 1.0]) * (time > contact)
+    noise = 0.01 * np.random.default_rng(4).standard_normal((2, time.size))
+    wave = np.array([np.sin(TURN * time / turn), np.cos(3.0 * TURN * time / turn)])
+    return time, size * wave + noise
+
+
+def test_a_contact_within_the_first_revolution_is_not_taken_for_full_immersion(case):
+    """Less than a revolution in the air shows no swing of its own; the entry is left out still."""
+    case = case.patch({"cut.feed_per_tooth": "0.5 mm"})
+    time, signals = a_cut_that_begins(case, 0.5 * TURN / case.cut.spindle_speed)
+    stages = stages_of(case, time, signals, "air")
+    # the tool travels 0.2 R sin(...) ... R at 50 mm/s
+    assert time[stages.settled.start] > 0.2
+    assert stages.drift < 0.01
+
+
+def test_a_cut_that_grows_throughout_drifts(case):
+    time = np.arange(6000) * 1e-4
+    wave = np.sin(case.cut.spindle_speed * time)
+    grown = np.array([np.linspace(0.9, 1.1, time.size) * wave])
+    stages = stages_of(case, time, grown, "cut")
+    # of a part in which the size grows by d from half to half, over its deviation: d
+    part = time[stages.settled]
+    assert stages.drift == pytest.approx(0.2 / 0.6 * 0.5 * (part[-1] - part[0]), rel=0.15)
+    assert stages_of(case, time, np.array([wave]), "cut").drift < 1e-3
+
+
 def test_channels_come_into_the_axes_of_the_case():
     force = np.random.default_rng(0).standard_normal((3, 50))
     signals = {"time": np.arange(50.0), "a": -force[1], "b": force[0], "c": force[2], "d": force[0]}
