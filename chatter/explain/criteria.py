@@ -72,6 +72,9 @@ CONFOUNDED = 0.03
 MOST_PROBABLE = 0.999
 #: part of a signal's rms by which predictions of other numerics may differ
 NUMERICS = 0.004
+#: the same of an acceleration, of which the top of the band is most: filter and numerics differ
+#: there most
+NUMERICS_OF_ACCELERATION = 0.008
 #: normalised residual of a run that a trial case cannot predict: worse than any that it can
 IMPOSSIBLE = 1e3
 #: noise that is assumed before the first fit, as a share of the signal

@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.explain.criteria import REFITTED_WITHIN
+from chatter.explain.criteria import NUMERICS_OF_ACCELERATION, REFITTED_WITHIN
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
@@ -22,7 +22,7 @@ from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.anti_alias_filter import with_filter_by
 from chatter.explain.records.beginning import beginning_of
-from chatter.explain.records.description import REST
+from chatter.explain.records.description import ACCELERATION, REST
 from chatter.explain.records.from_rest import from_rest
 from chatter.explain.records.recognition import from_rest_records, settled_records
 from chatter.explain.records.steady_record import SteadyRecord
@@ -153,7 +153,12 @@ class Milling(Kind):
         self, run: Run, predicted: Signals, noise: Mapping[str, float]
     ) -> Mapping[str, float]:
         """Standard deviation of every channel from the residual, where records do not tell it."""
-        return {**super().noise_beside(run, predicted, noise), **self.known_noise(run)}
+        found = dict(super().noise_beside(run, predicted, noise))
+        for name, one in run.components.items():
+            if one.quantity == ACCELERATION:
+                level = float(np.sqrt(np.mean(run.signals[name] ** 2)))
+                found[name] = math.hypot(found[name], NUMERICS_OF_ACCELERATION * level)
+        return {**found, **self.known_noise(run)}
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Cutting coefficients and modal parameters."""
