@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import suppress
 from multiprocessing.sharedctypes import Synchronized
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ import numpy as np
 import tomlkit
 
 from benchmarks.blind_sets.__main__ import FIRST, KINDS
+from benchmarks.blind_sets.milling import CannotDrawError
 
 Answer = dict[str, Any]
 
@@ -86,16 +88,22 @@ def surveyed(
 
 
 def _answers(asked: Sequence[tuple[str, int, int]], processes: int) -> Iterator[Answer]:
-    """Answers as they come, of several sets at once where there are several processes."""
+    """Answers as they come, of several sets at once where there are several processes.
+
+    Sets that cannot be drawn are passed over.
+    """
     if processes == 1:
-        yield from (answer_of(*one) for one in asked)
+        for one in asked:
+            with suppress(CannotDrawError):
+                yield answer_of(*one)
         return
     context = multiprocessing.get_context("spawn")
     started = context.Value("i", 0)
     pool = ProcessPoolExecutor(processes, context, _on_own_core, (started,))
     try:
         for done in as_completed([pool.submit(answer_of, *one) for one in asked]):
-            yield done.result()
+            if not isinstance(done.exception(), CannotDrawError):
+                yield done.result()
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 

@@ -26,6 +26,7 @@ _PLOUGHING = {
     "process_damping.indentation_force": "40 N/um/mm^2",
     "process_damping.friction": 0.3,
     "tool.flank_wear": "0.05 mm",
+    "tool.clearance_angle": "6 deg",
 }
 _VARYING = {"cut.speed_variation.amplitude": 0.1, "cut.speed_variation.frequency": "20 Hz"}
 _CONTACT = {"contact.stiffness": "2 N/um", "contact.damping": "60 N*s/m"}

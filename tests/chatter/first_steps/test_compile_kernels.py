@@ -1,9 +1,11 @@
 """Every kind of computation is asked for; the small cases of it are cases that can be read."""
 
+import functools
 import itertools
 
 from chatter.description.law_section import FRICTION_LAWS
 from chatter.first_steps import compile_kernels as compiling
+from chatter.simulation.setup import set_up
 from chatter.stability.registry import METHODS
 
 
@@ -49,3 +51,12 @@ def test_small_cases_hold_what_their_names_say():
     )
     assert case.material.law == "exponential"
     assert compiling._case(patch=compiling._CONTACT).contact is not None
+
+
+def test_every_question_can_be_asked():
+    """A case that cannot be set up would end `chatter compile` half way."""
+    questions = [*compiling._of_stability(), *compiling._of_time()]
+    cases = [one.ask.args[0] for one in questions if isinstance(one.ask, functools.partial)]
+    assert len(cases) > 20
+    for case in cases:
+        assert set_up(case).step > 0.0
