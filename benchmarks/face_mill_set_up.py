@@ -27,16 +27,14 @@ from chatter.simulation.virtual_tests.recorded_move import recorded_move
 
 EXAMPLE = Path(__file__).resolve().parents[1] / "examples" / "face-mill-chatter"
 EVERY_FRICTION = tuple(f"{part}_{axis}" for axis in "xyz" for part in ("rotation", "translation"))
+#: without both frictions of the axis that moves
+NOT_OF_Y = tuple(name for name in EVERY_FRICTION if not name.endswith("y"))
 #: published: spring, N/m, and damper, N s/m, between tool and workpiece
 STIFFNESS, DAMPING = 2.50e6, 3.35e3
 #: scatter of FRFs and noise of cuts, shares; noise of torque, N m, and of positions, m
 SCATTER, NOISE, NOISE_OF_TORQUE, NOISE_OF_POSITION = 0.02, 0.02, 0.02, 0.3e-6
 LINES = np.arange(20.0, 140.0, 3.0)  # Hz
-#: strokes, m, and frequency, Hz, of sines of the axes; a second each
-SINES = (("Y", 10e-3, 1.0), ("Y", 2e-3, 2.0), ("Y", 20e-3, 1.0))
-#: speed, rpm, and depth, mm, of the cuts; short of chatter
-CUTS = ((840, 2.0), (900, 1.5), (780, 2.5))
-REVOLUTIONS, SAMPLED = 5, 5e-4
+SAMPLED = 5e-4  # cuts, s
 #: of the data, against the case declared
 FINER = {"machine.step": 25e-6}
 
@@ -77,28 +75,52 @@ class Trial(NamedTuple):
     declared: Machine
 
 
+class Extent(NamedTuple):
+    """How much is measured."""
+
+    directions: str  # of FRFs
+    #: strokes, m, and frequency, Hz, of sines of the axes
+    sines: tuple[tuple[str, float, float], ...]
+    duration: float  # of each, s
+    #: speed, rpm, and depth, mm, of the cuts; short of chatter
+    cuts: tuple[tuple[float, float], ...]
+    revolutions: int
+    #: of the case, in the data and as declared
+    overrides: Mapping[str, Any]
+
+
+FULL = Extent(
+    "xy", (("Y", 10e-3, 1.0), ("Y", 2e-3, 2.0), ("Y", 20e-3, 1.0)), 1.0,
+    ((840, 2.0), (900, 1.5), (780, 2.5)), 5, {},
+)  # fmt: skip
+#: what a test has time for; axes come to the feed for less long before they cut
+SMALL = Extent("y", (("Y", 10e-3, 2.0),), 0.5, ((840, 2.0),), 3, {"structure.settling": 0.35})
+
+
 TRIALS: Mapping[str, Trial] = {
     "contact": Trial(Machine(True, EVERY_FRICTION), Machine(False, EVERY_FRICTION)),
+    "friction": Trial(Machine(True, EVERY_FRICTION), Machine(True, NOT_OF_Y)),
+    "both": Trial(Machine(True, EVERY_FRICTION), Machine(False, NOT_OF_Y)),
     "nothing": Trial(Machine(True, EVERY_FRICTION), Machine(True, EVERY_FRICTION)),
 }
 
 
-def write_set_up(folder: Path, trial: Trial, seed: int) -> None:
+def write_set_up(folder: Path, trial: Trial, seed: int, extent: Extent = FULL) -> None:
     """Write measurement, case and machine of a trial into a folder."""
-    truth = trial.true.case_in(folder / "truth").patch(FINER)
-    trial.declared.case_in(folder)
+    truth = trial.true.case_in(folder / "truth").patch({**extent.overrides, **FINER})
+    trial.declared.case_in(folder).patch(extent.overrides).save(folder / "case.toml")
     random = np.random.default_rng(seed)
     text = 'kind = "set-up"\ncase = "case.toml"\n'
     for part in (_taps, _moves, _cuts):
-        text += part(folder, truth, random)
+        text += part(folder, truth, random, extent)
     (folder / "measurement.toml").write_text(text, encoding="utf-8")
 
 
-def _taps(folder: Path, truth: Case, random: Generator) -> str:
+def _taps(folder: Path, truth: Case, random: Generator, extent: Extent) -> str:
     """FRFs at the tool point in two directions and three states, each twice."""
     text = '[[part]]\nkind = "frf"\n'
     for condition in ("at_rest", "moving", "in_cut"):
-        for direction in "xy":
+        for direction in extent.directions:
             exact = machine_response(truth, condition, direction, direction, LINES)
             for repetition in range(2):
                 noise = random.standard_normal((2, LINES.size)) * np.abs(exact) * SCATTER
@@ -111,11 +133,11 @@ def _taps(folder: Path, truth: Case, random: Generator) -> str:
     return text
 
 
-def _moves(folder: Path, truth: Case, random: Generator) -> str:
+def _moves(folder: Path, truth: Case, random: Generator, extent: Extent) -> str:
     """Strokes of the axes: torque of the motor, and its position."""
     text = '[[part]]\nkind = "axis"\n'
-    for number, (axis, stroke, frequency) in enumerate(SINES):
-        at = np.arange(0.0, 1.0, 1e-3)
+    for number, (axis, stroke, frequency) in enumerate(extent.sines):
+        at = np.arange(0.0, extent.duration, 1e-3)
         command = 0.5 * stroke * (1.0 - np.cos(2.0 * math.pi * frequency * at))
         made = recorded_move(truth, axis, at, command)
         behind = np.interp(at, made.time, (made.wanted - made.motor)[:, 0], left=0.0)
@@ -129,13 +151,14 @@ def _moves(folder: Path, truth: Case, random: Generator) -> str:
     return text
 
 
-def _cuts(folder: Path, truth: Case, random: Generator) -> str:
+def _cuts(folder: Path, truth: Case, random: Generator, extent: Extent) -> str:
     """Forces, and displacements of the tool against the work, of short cuts."""
     text = '[[part]]\nkind = "milling"\n'
-    for number, (speed, depth) in enumerate(CUTS):
+    for number, (speed, depth) in enumerate(extent.cuts):
         conditions: dict[str, Any] = {"cut.spindle_speed": f"{speed} rpm"}
         conditions |= {"cut.axial_depth": f"{depth} mm", "simulation.duration": None}
-        made = chatter.simulate(truth.patch({**conditions, "simulation.revolutions": REVOLUTIONS}))
+        conditions["simulation.revolutions"] = extent.revolutions
+        made = chatter.simulate(truth.patch(conditions))
         at = np.arange(0.0, made.time[-1], SAMPLED)
         exact = [*made.force[:, :2].T, *(1e6 * made.displacement[:, :2].T)]
         columns = [at]

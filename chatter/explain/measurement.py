@@ -80,6 +80,11 @@ class Run:
         whole = None if self.whole is None else self.whole.with_overrides(overrides)
         return replace(self, overrides={**self.overrides, **overrides}, whole=whole)
 
+    def of_kind(self, kind: str) -> Run:
+        """Same run, as a whole and in its part, as one of a kind of a set-up."""
+        whole = None if self.whole is None else self.whole.of_kind(kind)
+        return replace(self, kind=kind, whole=whole)
+
     def of(self, case: Case) -> Case:
         """Return a case with the overrides of the run."""
         return case.patch(dict(self.overrides)) if self.overrides else case
@@ -123,7 +128,7 @@ class Measurement:
 
     def with_parts(self, parts: Sequence[Measurement]) -> Measurement:
         """Return a set-up with other parts, and their runs."""
-        runs = [replace(run, kind=part.kind) for part in parts for run in part.runs]
+        runs = [run.of_kind(part.kind) for part in parts for run in part.runs]
         return replace(self, parts=tuple(parts), runs=tuple(runs))
 
     def in_parts(self, most: int = _PARTS) -> Measurement:

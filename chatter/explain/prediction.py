@@ -8,12 +8,15 @@ from typing import Any
 
 from chatter.description.case import Case
 from chatter.explain.kinds.kind import Kind, Signals
+from chatter.explain.kinds.same_case import OfSameCase
 from chatter.explain.measurement import Measurement, Run
 from chatter.studies.kept_arrays import KeptArrays, digest_of
 from chatter.studies.model import fingerprint
 
 #: memory of the predictions kept, bytes: two dozen of a measurement of some megabytes
 _MOST_BYTES = 96_000_000
+#: contents of cases that are kept
+_MOST_CONTENTS = 48
 
 
 class Predictions:
@@ -38,6 +41,7 @@ class Predictions:
         self._bytes = 0
         self._lock = Lock()
         self._coarse: dict[int, tuple[Run, Mapping[str, Any]]] = {}
+        self._contents: OfSameCase[str] = OfSameCase(_MOST_CONTENTS)
 
     def of(self, case: Case, run: Run) -> Signals:
         """Predicted signals at the samples of a run, by a case without its overrides.
@@ -47,12 +51,13 @@ class Predictions:
         whole = run.whole or run
         own = self.kind.reduced(whole.of(case), whole)
         # a run with other weights is predicted alike
-        key = (own.content, id(whole.signals), self.kind.predicted_as(whole))
+        content = self._contents.of(own, None, lambda: own.content)
+        key = (content, id(whole.signals), self.kind.predicted_as(whole))
         with self._lock:
             kept = self._kept.get(key)
             if kept is not None:
                 self._kept.move_to_end(key)
-        found = self._made(own, whole) if kept is None else kept[1]
+        found = self._made(own, content, whole) if kept is None else kept[1]
         if kept is None:
             self._keep(key, whole, found)
         if run.part is None:
@@ -73,12 +78,12 @@ class Predictions:
                 self._coarse[id(whole.signals)] = known
         return run.with_overrides(known[1]) if known[1] else run
 
-    def _made(self, own: Case, whole: Run) -> Signals:
+    def _made(self, own: Case, content: str, whole: Run) -> Signals:
         """Predict a whole run, or read what is kept of it."""
         if not self.kind.stands_alone(whole):
             return self.kind.predict(own, whole)
         told = self.kind.predicted_as(whole)
-        inputs = f"{whole.kind} {whole.name} {self._digest_of(whole)} {own.content} {told}"
+        inputs = f"{whole.kind} {whole.name} {self._digest_of(whole)} {content} {told}"
         return self.kept.made(inputs, lambda: self.kind.predict(own, whole))
 
     def _digest_of(self, whole: Run) -> str:

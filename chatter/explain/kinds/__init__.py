@@ -10,6 +10,7 @@ axis_record     smoothed motion, weights and noise of the record of a move
 drive           torque and position of an axis of a machine, by the machine in time
 stability       cutting tests judged stable or chatter
 frf             receptances at the tool point, idle and in the cut
+same_case       what follows from a case, kept while that very case is asked for
 kind_list       the list: where a new kind joins
 =============== ====================================================================
 """

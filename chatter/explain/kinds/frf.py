@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from chatter.compile.machine_response import STATES, machine_response
+from chatter.compile.machine_response import STATES, MachineState, machine_response
 from chatter.compile.structure import structure_of
 from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
@@ -17,6 +17,7 @@ from chatter.explain.data_checks.samples import Columns, sample_checks
 from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals, of_sections
 from chatter.explain.kinds.milling import structural_paths
+from chatter.explain.kinds.same_case import OfSameCase
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.over_lines import by_condition, over_lines
 from dynamics.modal.modes import receptance_matrix
@@ -28,6 +29,8 @@ _CHANNELS = ("real", "imag")
 _AXES = "xyz"
 #: lines over which the scatter is taken for one
 _SMOOTHED = 31
+#: cases without what an FRF does not depend on, and receptances, that are kept
+_KEPT = 48
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +54,10 @@ class FrequencyResponse(Kind):
         (wrong_responses,),
         (disagreeing_responses,),
     )
+
+    def __init__(self) -> None:
+        self._reduced: OfSameCase[Case] = OfSameCase(_KEPT)
+        self._responses: OfSameCase[Signals] = OfSameCase(_KEPT)
 
     def channels(self, run: Run) -> tuple[str, ...]:
         """Real and imaginary part."""
@@ -77,9 +84,8 @@ class FrequencyResponse(Kind):
         """Receptance of the modes or the machine, with the contact where the tool is in the cut."""
         frequency = run.signals["frequency"]
         if case.on_machine:
-            read, excite = read_and_excited(run)
-            found = machine_response(case, run.condition, read, excite, frequency)
-            return {"real": found.real, "imag": found.imag}
+            measured = run.condition, run.direction, frequency.tobytes()
+            return self._responses.of(case, measured, lambda: _of_machine(case, run))
         free = receptance_matrix(structure_of(case).modes, frequency)
         if run.condition == IN_CUT and case.contact is not None:
             free = touching(free, frequency, case.contact.stiffness, case.contact.damping)
@@ -92,6 +98,9 @@ class FrequencyResponse(Kind):
         state = STATES.get(run.condition) if case.on_machine else None
         if state is None:
             return case
+        return self._reduced.of(case, state, lambda: self._in_state(case, state))
+
+    def _in_state(self, case: Case, state: MachineState) -> Case:
         sections = {*self.sections}
         if state.in_cut:
             sections.add("contact")
@@ -138,6 +147,13 @@ def _feed_of(case: Case) -> dict[str, Any]:
         return {"tool": case.tool, "cut": case.cut}
     plain = {name: one.default for name, one in Tool.model_fields.items() if not one.is_required()}
     return {"tool": case.tool.model_copy(update=plain), "cut": case.cut}
+
+
+def _of_machine(case: Case, run: Run) -> Signals:
+    """Receptance of the machine in the state of a run."""
+    read, excite = read_and_excited(run)
+    found = machine_response(case, run.condition, read, excite, run.signals["frequency"])
+    return {"real": found.real, "imag": found.imag}
 
 
 def read_and_excited(run: Run) -> tuple[str, str]:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.kinds.kind import Trial
+from chatter.explain.measurement import Run
 from chatter.explain.next_measurement.alternatives import Alternative, alternatives
 from chatter.explain.next_measurement.limits import is_within
 from chatter.explain.selection.search import Search
@@ -51,8 +51,9 @@ def _best(found: Search, models: list[Alternative]) -> tuple[Trial, str, float] 
     for trial in kind.trials(measurement, found.problem.noise):
         if not is_within(trial, measurement.limits, measurement.case):
             continue
+        run = _coarse(trial.run, found)
         try:
-            predicted = [_of(case, trial, found) for _, case in cases]
+            predicted = [found.problem.kind.predict(run.of(case), run) for _, case in cases]
         except (InputError, RunError):
             # what cannot be cut cannot be measured
             continue
@@ -64,8 +65,12 @@ def _best(found: Search, models: list[Alternative]) -> tuple[Trial, str, float] 
     return best
 
 
-def _of(case: Case, trial: Trial, found: Search):
-    return found.problem.kind.predict(trial.run.of(case), trial.run)
+def _coarse(run: Run, found: Search) -> Run:
+    """Run as it is predicted at less cost by a machine: what counts is how far models differ."""
+    declared = found.measurement.case
+    if not declared.on_machine:
+        return run
+    return run.with_overrides(found.problem.kind.coarse(declared, run))
 
 
 def in_words(entry: dict[str, Any]) -> str:

@@ -13,7 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import CERTAIN_EVIDENCE, FITTED_IN_FULL, NEAR_NOISE, PROMISING
+from chatter.explain.criteria import (
+    AT_NOISE,
+    CERTAIN_EVIDENCE,
+    FITTED_IN_FULL,
+    NEAR_NOISE,
+    PROMISING,
+)
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
@@ -55,13 +61,30 @@ def screened_candidates(
         asked = _asked_for(problem, part, cheap, shown)
         if asked:
             return asked
-    others = [ScreenedCandidate(one) for one in effects if not kinds & set(one.kinds)]
+    others = [
+        ScreenedCandidate(one)
+        for one in effects
+        if not kinds & set(one.kinds) and _may_be_missing(problem, one, now, runs)
+    ]
     steps = [(one, _step_from_nothing(problem, one, part, cheap)) for one in shown]
     return others + [
         ScreenedCandidate(effect, [step.values])
         for effect, step in steps
         if not _is_excluded(problem, effect, step) and _promises(problem, effect, now, runs)
     ]
+
+
+def _may_be_missing(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> bool:
+    """Whether an effect that the cheaper runs do not show is worth its starts by all runs.
+
+    Where these are at their noise it is small, if it is there. One that the residual proposes does
+    not grow from nothing in a straight line.
+    """
+    if now.cost > AT_NOISE**2 * now.residuals.size:
+        return True
+    if type(effect).proposed is not Effect.proposed:
+        return True
+    return _promises(problem, effect, now, runs)
 
 
 def _promises(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> bool:
