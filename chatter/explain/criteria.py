@@ -7,6 +7,9 @@ Residuals are counted in standard deviations of the noise; a model that is right
 #: samples the estimate of the noise itself scatters by some percent, and the prediction by other
 #: numerics by up to half a percent of the signal
 AT_NOISE = 1.12
+#: the same of holdout runs by a fit to the others, whose values are uncertain as well: of 43
+#: explanations that were right the most was 1.3, of a wrong one 4.7
+HOLDOUT_AT_NOISE = 1.5
 #: rms below which nothing more is looked for: noise alone
 NO_RESIDUAL = 1.0
 #: fall of the sum of squares of holdout runs that is significant, and a share of their samples on

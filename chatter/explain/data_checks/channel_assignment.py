@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
-from chatter.explain.data_checks.finding import FATAL, RUN, SignalFinding, of_all_or_some
+from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SignalFinding, of_all_or_some
 from chatter.explain.data_checks.patterns import (
     Patterns,
     basis_patterns,
@@ -140,7 +140,11 @@ def _multiple(
         best = fitted(cut.measured, cut.basis)[1]
         if best < _FITS and cut.of_all(best) < _CLEARER * of_all:
             description = f"{cut.description}: {_numbers(cut.of_all(best), of_all)}"
-            return [SignalFinding(FATAL, "", "Fx, Fy", description)]
+            if other > 1:
+                return [SignalFinding(FATAL, "", "Fx, Fy", description)]
+            # runout of more than half a feed lets one tooth cut for all
+            description += "; there is one tooth, or runout lets one cut for all"
+            return [SignalFinding(NOTE, "", "Fx, Fy", description)]
     return []
 
 
@@ -234,9 +238,8 @@ def _other_teeth(teeth: int, measurement: Measurement, runs: Sequence[Run]) -> C
         "diameter": tool.diameter,
         "helix": float(np.mean(tool.helix)),
     }
-    description = (
-        f"the forces repeat {teeth} times a revolution; the case declares {tool.teeth} teeth"
-    )
+    times = "once" if teeth == 1 else f"{teeth} times"
+    description = f"the forces repeat {times} a revolution; the case declares {tool.teeth} teeth"
     return _cut(description, measurement.with_case(measurement.case.patch({"tool": other})), runs)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from chatter.explain.criteria import MOST_EFFECTS, NO_RESIDUAL, OUT_OF_TOLERANCE
+from chatter.explain.criteria import HOLDOUT_AT_NOISE, MOST_EFFECTS, NO_RESIDUAL, OUT_OF_TOLERANCE
 from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
@@ -57,8 +57,18 @@ class Search:
 
     @property
     def is_at_noise(self) -> bool:
-        """Whether the residual of every channel is at its noise."""
-        return is_at_noise(self.problem, self.final)
+        """Whether every channel is at its noise, and holdout runs are predicted so."""
+        return is_at_noise(self.problem, self.final) and self.predicts_holdout
+
+    @property
+    def predicts_holdout(self) -> bool:
+        """Whether the fit to the other runs predicts the holdout runs as well as noise allows.
+
+        Runs that took part in a fit may be at the noise by values that hold for them alone.
+        """
+        holdout = self.split.holdout
+        path = Path(list(self.accepted), self.problem, self.of_fitted)
+        return path.over_noise(holdout) <= HOLDOUT_AT_NOISE
 
     @property
     def is_certain(self) -> bool:
@@ -70,9 +80,15 @@ class Search:
 
     @property
     def out_of_tolerance(self) -> Mapping[str, float]:
-        """Declared values that the fit pulls out of their tolerances, in standard deviations."""
+        """Declared values that the fit pulls out of their tolerances, in standard deviations.
+
+        What an effect adds is not declared: its usual size only helps the search.
+        """
+        added = {one.name for one in self.problem.effects}
         return {
-            name: pull for name, pull in self.final.pulls.items() if abs(pull) > OUT_OF_TOLERANCE
+            name: pull
+            for name, pull in self.final.pulls.items()
+            if abs(pull) > OUT_OF_TOLERANCE and name.partition(".")[0] not in added
         }
 
 

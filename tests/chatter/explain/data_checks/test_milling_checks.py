@@ -110,6 +110,17 @@ def test_teeth_are_counted_in_spite_of_runout():
     assert "repeat 4 times a revolution; the case declares 3" in finding.description
 
 
+def test_a_tooth_that_cuts_for_all_contradicts_nothing():
+    """Radii of two teeth differ by 0.14 mm, more than the feed: the second never meets the work."""
+    measurement = simulated.milling(tool__teeth=2, tool__runout={"offset": "70 um"})
+    declared = measurement.case.patch({"tool.runout": None})
+    usable = checked(measurement.with_case(declared))
+    assert not usable.is_fatal
+    (told,) = [one for one in usable.findings if "repeat once" in one.description]
+    assert told.severity == "note"
+    assert "runout lets one cut for all" in told.description
+
+
 @pytest.mark.parametrize("with_angle", [True, False])
 @pytest.mark.parametrize("factor", [1.03, 0.96])
 def test_a_wrong_spindle_speed_is_said(factor, with_angle):

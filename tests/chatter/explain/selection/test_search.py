@@ -1,5 +1,7 @@
 """The search on sums of known shapes: what pays together, and what is next to none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -114,6 +116,35 @@ def test_a_joint_step_promises_what_linear_models_give():
     assert pair.gain == pytest.approx(25.0 * count, rel=0.03)
     assert pair.alone < 0.01 * pair.gain
     assert pair.values["asymmetry.asymmetry"] == pytest.approx(1.0, abs=0.02)
+
+
+def test_what_holds_for_the_fitted_runs_alone_explains_nothing():
+    """A fit to the other runs that is off by more than the noise, which one to all runs hides."""
+
+    def shapes_of(random):
+        return random.standard_normal((3, SAMPLES))
+
+    found = found_in(measured(shapes_of, (3.0, 0.0, 0.0)))
+    assert found.is_at_noise
+    for change, holds in ((0.02, True), (2.0, False)):
+        off = replace(found.of_fitted, values=found.of_fitted.values + change)
+        assert replace(found, of_fitted=off).is_at_noise == holds
+
+
+def test_what_an_effect_adds_is_not_out_of_a_tolerance():
+    """Its usual size helps the search; nobody has declared it."""
+
+    def shapes_of(random):
+        return random.standard_normal((3, SAMPLES))
+
+    found = found_in(measured(shapes_of, (3.0, 0.0, 0.0)))
+    expected = tuple(replace(one, prior=True, size=0.01) for one in found.final.parameters)
+    far = replace(found, final=replace(found.final, parameters=expected))
+    assert max(abs(pull) for pull in far.final.pulls.values()) > 100.0
+    assert far.out_of_tolerance == {}
+    declared = tuple(replace(one, name="material.Ktc") for one in expected)
+    far = replace(found, final=replace(found.final, parameters=declared))
+    assert set(far.out_of_tolerance) == {"material.Ktc"}
 
 
 def test_an_effect_that_nobody_could_notice_is_not_named_beside_another():
