@@ -2,9 +2,7 @@
 
 import os
 
-import pytest
 from hypothesis import settings
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 # matrices in the tests are small: threads of BLAS cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -27,14 +25,3 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if item.get_closest_marker("nightly"):
             item.user_properties.append(("nightly", True))
-
-
-@pytest.fixture(autouse=True)
-def layout_of_pictures(request, monkeypatch):
-    """Make no room for the labels of a picture, which is most of the time of drawing it.
-
-    A nightly run makes it, and modules of tests that look at pictures have a fixture of this name
-    that does nothing.
-    """
-    if "not nightly" in request.config.option.markexpr:
-        monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda engine, figure: None)

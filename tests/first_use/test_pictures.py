@@ -19,11 +19,6 @@ from chatter.studies.diagram_over_axes import lobes_over
 from tests.first_use.shop import cut
 
 
-@pytest.fixture(autouse=True)
-def layout_of_pictures():
-    """Leave the layout as it is; see the fixture of this name in tests/conftest.py."""
-
-
 @pytest.fixture(scope="module")
 def over_width():
     return lobes_over(cut(), "cut.radial_depth=2 mm..16 mm:6")
