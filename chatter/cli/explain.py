@@ -98,7 +98,8 @@ def _print_explanation(result: Explanation) -> None:
         for key, value in error.items()
         if isinstance(value, float)
     ]
-    print_table("error of the prediction", ["of", "rms over signal"], rows)
+    if rows:
+        print_table("error of the prediction", ["of", "rms over signal"], rows)
     _print_errors_by_kind(summary)
     if summary["next_measurement"] is not None:
         print_line(in_words_next(summary["next_measurement"]))

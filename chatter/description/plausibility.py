@@ -27,6 +27,9 @@ PLAUSIBLE_MODE: dict[str, tuple[float, float, str]] = {
     "damping": (1e-6, 1.0, ""),
     "modal_mass": (1e-9, 1e9, "kg"),
 }
+#: tangential coefficient times axial depth over the stiffness of a mode: a stable cut has hardly
+#: more than one, and what is far beyond takes methods for hours
+_STIFFEST_CUT = 1e4
 #: the top of the edge trails its tip by at most this, rad
 _LARGEST_LAG = 200.0
 #: waves of a serrated edge within the depth of cut
@@ -44,6 +47,7 @@ def check_plausible(case: Case) -> None:
         for key, bounds in PLAUSIBLE_MODE.items():
             path = f"structure.mode[{index}].{key.removeprefix('modal_')}"
             problems += _problem(case.name, path, getattr(mode, key), bounds)
+    problems += _softest_mode(case)
     helix = case.tool.helix
     angles = helix if isinstance(helix, tuple) else (helix,)
     deepest = max(case.cut.axial_depth, _value(case, "lobes.depths.to") or 0.0)
@@ -63,6 +67,25 @@ def check_plausible(case: Case) -> None:
         )
     if problems:
         raise InputError(problems)
+
+
+def _softest_mode(case: Case) -> list[str]:
+    """Say which mode is softer by far than the cut, as one whose stiffness is in another unit."""
+    if case.material is None or not case.material.Ktc or case.structure is None:
+        return []
+    cut = case.material.Ktc * case.cut.axial_depth
+    problems = []
+    for index, mode in enumerate(case.structure.mode):
+        stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
+        in_plane = math.hypot(mode.direction[0], mode.direction[1]) ** 2
+        if cut * in_plane > _STIFFEST_CUT * stiffness:
+            problems.append(
+                f"{case.name}: structure.mode[{index}].stiffness: {stiffness * 1e-6:.3g} N/um is "
+                f"{cut * in_plane / stiffness:.2g} times less than a cut of "
+                f"{case.cut.axial_depth * 1e3:g} mm has (material.Ktc times cut.axial_depth); at "
+                f"most {_STIFFEST_CUT:g} times is allowed; a bare number is in N/m"
+            )
+    return problems
 
 
 def _value(case: Case, path: str) -> float | None:

@@ -27,8 +27,10 @@ LEAST_GAIN_SHARE_OF_FRFS = 0.05
 #: effects are tried
 LEAST_EVIDENCE, CERTAIN_EVIDENCE = 6.0, 10.0
 #: share of the misfit above the noise that an effect beyond doubt takes away where something else
-#: is left: effects that stood for others of the unlisted took away a third
-LEAST_SHARE_IN_PART = 0.4
+#: is left: effects that stood for others of the unlisted took away a fifth at the most
+LEAST_SHARE_IN_PART = 0.15
+#: the same of FRFs, where a mode stood for a third of what a delay of the sensor does
+LEAST_SHARE_IN_PART_OF_FRFS = 0.4
 #: sum of squares of holdout runs over that without an effect, from which on it is not one
 MOST_LOST = 1.02
 #: level of the signed-rank test of the runs that gain by such an effect against those that lose

@@ -268,7 +268,7 @@ class Explanation:
         return [
             {"path": name, "declared": declared[name], "refitted": fit.by_name[name],
              "standard_deviations": pull}
-            for name, pull in fit.pulls.items()
+            for name, pull in self.found.problem.declared_pulls(fit).items()
             if abs(pull) > OUT_OF_TOLERANCE
         ]  # fmt: skip
 

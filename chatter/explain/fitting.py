@@ -13,6 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from chatter.explain.criteria import REFITTED_WITHIN
 from chatter.explain.measurement import Measurement
 
 Vector = NDArray[np.float64]
@@ -433,4 +434,14 @@ def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Paramete
         if deviation > 0.0:
             lowest = 0.02 * value if value > 0.0 else -np.inf
             found.append(Parameter(path, value, deviation, lower=lowest))
+    return found
+
+
+def within_reach(parameters: Sequence[Parameter]) -> list[Parameter]:
+    """Declared values with bounds within which they are refitted."""
+    found = []
+    for one in parameters:
+        farthest = REFITTED_WITHIN * one.size
+        lowest = max(one.lower, one.start - farthest)
+        found.append(replace(one, lower=lowest, upper=one.start + farthest))
     return found

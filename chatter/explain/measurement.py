@@ -80,6 +80,11 @@ class Run:
         whole = None if self.whole is None else self.whole.with_overrides(overrides)
         return replace(self, overrides={**self.overrides, **overrides}, whole=whole)
 
+    def with_record(self, record: Any) -> Run:
+        """Same run, as a whole and in its part, with another record."""
+        whole = None if self.whole is None else self.whole.with_record(record)
+        return replace(self, record=record, whole=whole)
+
     def of_kind(self, kind: str) -> Run:
         """Same run, as a whole and in its part, as one of a kind of a set-up."""
         whole = None if self.whole is None else self.whole.of_kind(kind)

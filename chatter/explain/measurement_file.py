@@ -40,7 +40,7 @@ _ONE_KIND_KEYS = tuple(key for key in KEYS if key != "part")
 PART_KEYS = ("title", "kind", "points", "run", "idle_power", "record", "channels")
 SET_UP_KEYS = ("title", "kind", "case", "part", "tolerance", "next_measurement")
 _DESCRIPTION = "measurement.toml"
-#: samples that a part of a record has at the least
+#: samples that a record, and a part of one, has at the least
 _LEAST_SAMPLES = 2
 #: sections of a case that a short key of a run may mean
 SECTIONS = ("cut", "tool", "material", "axis")
@@ -285,6 +285,10 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     condition = str(entry.get("condition", ""))
     signals = read_signals(file, kind, direction)
     name = file.name
+    if (count := next(iter(signals.values())).size) < _LEAST_SAMPLES:
+        raise InputError(
+            f"{where}: holds {count} samples a channel; {_LEAST_SAMPLES} are needed at the least"
+        )
     if "from" in entry or "to" in entry:
         name, signals = _window(where, name, entry, signals)
     axis = _axis(where, entry, declared)

@@ -46,15 +46,20 @@ def test_power_of_a_tapered_ball_is_its_removal_rate_times_ktc(tilt):
     assert found.mean_power == pytest.approx(KTC * rate, rel=4e-3)
 
 
-def test_a_tapered_ball_that_hardly_leads_is_an_upright_one():
+def assert_hardly_leading_is_upright(made):
+    """A tool made of a lead and a tilt cuts alike upright and with next to no lead."""
     upright, leading = (
-        tapered(lead, 0.0, structure={"mode": MODES}, simulation={"revolutions": 4})
+        made(lead, 0.0, structure={"mode": MODES}, simulation={"revolutions": 4})
         for lead in (0.0, 1e-6)
     )
     one, other = chatter.simulate(upright), chatter.simulate(leading)
     largest = np.abs(one.mean_force).max()
     assert other.mean_force == pytest.approx(one.mean_force, abs=2e-3 * largest)
     assert radius(leading) == pytest.approx(radius(upright), rel=1e-3)
+
+
+def test_a_tapered_ball_that_hardly_leads_is_an_upright_one():
+    assert_hardly_leading_is_upright(tapered)
 
 
 def radius(case, method="collocation"):
@@ -95,14 +100,7 @@ def test_power_of_a_sharp_cone_is_its_removal_rate_times_ktc(tilt, mode):
 
 
 def test_a_sharp_cone_that_hardly_leads_is_an_upright_one():
-    upright, leading = (
-        cone(lead, 0.0, structure={"mode": MODES}, simulation={"revolutions": 4})
-        for lead in (0.0, 1e-6)
-    )
-    one, other = chatter.simulate(upright), chatter.simulate(leading)
-    largest = np.abs(one.mean_force).max()
-    assert other.mean_force == pytest.approx(one.mean_force, abs=2e-3 * largest)
-    assert radius(leading) == pytest.approx(radius(upright), rel=1e-3)
+    assert_hardly_leading_is_upright(cone)
 
 
 def test_a_sharp_cone_by_collocation_and_in_time():

@@ -7,7 +7,9 @@ effect           `Effect`: name, label, help, patch, parameters, where it applie
 tool             runout, pitch, wear
 cutting_force    edge force, chip exponent, process damping
 dynamometer      resonances of the force sensor
-structure        missing mode, mode shift, contact, slide friction
+missing_mode     missing mode
+resembling_modes where the residual of motions or FRFs proposes a mode
+structure        mode shift, contact, slide friction
 machine          joints, gains and frictions of a machine that are not as declared
 machine_friction friction of an axis of a machine
 axis             friction of a feed axis in its forms; offset, cogging

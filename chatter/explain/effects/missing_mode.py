@@ -1,4 +1,4 @@
-"""A mode that the structure lacks, and where the residual of the displacements proposes it."""
+"""A mode that the structure lacks."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -78,7 +78,7 @@ class MissingMode(Effect):
     def proposed(
         self, measurement: Measurement, predicted: Mapping[str, Signals]
     ) -> Sequence[Values]:
-        """Modes whose answer to the forces resembles what is left of displacements or FRFs."""
+        """Modes whose answer to the forces resembles the residual of displacements or FRFs."""
         return resembling_modes(measurement, predicted)
 
     def reported(self, values: Values) -> Reported:

@@ -11,10 +11,14 @@ from chatter.compile.structure import structure_of
 from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.description.sections.tool import Tool
-from chatter.explain.criteria import LEAST_GAIN, LEAST_GAIN_SHARE_OF_FRFS
+from chatter.explain.criteria import (
+    LEAST_GAIN,
+    LEAST_GAIN_SHARE_OF_FRFS,
+    LEAST_SHARE_IN_PART_OF_FRFS,
+)
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
-from chatter.explain.fitting import Parameter, with_priors
+from chatter.explain.fitting import Parameter, with_priors, within_reach
 from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals, of_sections
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.same_case import OfSameCase
@@ -48,6 +52,7 @@ class FrequencyResponse(Kind):
     columns = (("frequency",), ("real",), ("imag",))
     estimates_noise = False
     least_gain = (LEAST_GAIN, LEAST_GAIN_SHARE_OF_FRFS)
+    least_share_in_part = LEAST_SHARE_IN_PART_OF_FRFS
     diagnostics = (by_condition, over_lines)
     checks = (
         sample_checks(Columns(_CHANNELS, needed=_CHANNELS)),
@@ -133,7 +138,8 @@ class FrequencyResponse(Kind):
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Modal parameters, or what of the machine is declared as uncertain."""
         case = measurement.case
-        return with_priors(measurement, [*structural_paths(case), *machine_paths(case)])
+        paths = [*structural_paths(case), *machine_paths(case)]
+        return within_reach(with_priors(measurement, paths))
 
 
 def machine_paths(case: Case) -> list[str]:

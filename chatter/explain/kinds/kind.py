@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.criteria import AT_NOISE, FIRST_NOISE, LEAST_GAIN, LEAST_GAIN_SHARE, NUMERICS
+from chatter.explain.criteria import (
+    AT_NOISE,
+    FIRST_NOISE,
+    LEAST_GAIN,
+    LEAST_GAIN_SHARE,
+    LEAST_SHARE_IN_PART,
+    NUMERICS,
+)
 from chatter.explain.data_checks.finding import Check, SignalFinding
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
@@ -90,6 +97,8 @@ class Kind(ABC):
     least_gain : (float, float)
         Fall of the sum of squares of holdout runs that is significant, and what is added to it
         for each of their samples.
+    least_share_in_part : float
+        Share of a misfit that an effect takes away that is named though something else is left.
     """
 
     name: ClassVar[str]
@@ -109,6 +118,7 @@ class Kind(ABC):
     has_autocorrelation: ClassVar[bool] = True
     at_noise: ClassVar[float] = AT_NOISE
     least_gain: ClassVar[tuple[float, float]] = (LEAST_GAIN, LEAST_GAIN_SHARE)
+    least_share_in_part: ClassVar[float] = LEAST_SHARE_IN_PART
 
     @abstractmethod
     def channels(self, run: Run) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.explain.criteria import NUMERICS_OF_ACCELERATION, REFITTED_WITHIN
+from chatter.explain.criteria import NUMERICS_OF_ACCELERATION
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
@@ -17,7 +17,7 @@ from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
-from chatter.explain.fitting import Parameter, with_priors
+from chatter.explain.fitting import Parameter, with_priors, within_reach
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.anti_alias_filter import with_filter_by
@@ -166,7 +166,7 @@ class Milling(Kind):
         runout = measurement.case.tool.runout
         if runout is not None and runout.offset:
             paths.append("tool.runout.offset")
-        return [_within_reach(one) for one in with_priors(measurement, paths)]
+        return within_reach(with_priors(measurement, paths))
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """Cuts of the runs."""
@@ -217,12 +217,6 @@ def _coarse_machine(case: Case) -> Mapping[str, Any]:
     if settling is None or settling > _SETTLED:
         found["structure.settling"] = _SETTLED
     return found
-
-
-def _within_reach(one: Parameter) -> Parameter:
-    """Declared value with bounds within which it is refitted."""
-    farthest = REFITTED_WITHIN * one.size
-    return replace(one, lower=max(one.lower, one.start - farthest), upper=one.start + farthest)
 
 
 def cutting_paths(case: Case, coefficients: tuple[str, ...]) -> list[str]:

@@ -1,7 +1,5 @@
 """Order of the filter before the converter, told by how a case fits all the records together."""
 
-from dataclasses import replace
-
 from chatter.description.case import Case
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.alignment import ORDERS
@@ -17,29 +15,23 @@ def with_filter_by(measurement: Measurement, case: Case) -> Measurement:
     One converter makes all the records of a measurement. Corner frequency, start angle and offsets
     are found anew for each order.
     """
-    wholes = {id(whole): whole for whole in map(_whole, measurement.runs) if _is_steady(whole)}
-    if not wholes:
+    # a record once, of whatever parts its run is judged in
+    steady = {id(run.record): run.whole or run for run in measurement.runs if _is_steady(run)}
+    if not steady:
         return measurement
-    now = next(iter(wholes.values())).record.recorded.order
-    misfit = {order: _misfit(list(wholes.values()), case, order) for order in ORDERS}
+    runs = list(steady.values())
+    now = runs[0].record.recorded.order
+    misfit = {order: _misfit(runs, case, order) for order in ORDERS}
     best = min(misfit, key=lambda order: misfit[order])
     if misfit[best] > (1.0 - _LEAST_GAIN) * misfit[now]:
         return measurement
-    changed = {key: _filtered(whole, best) for key, whole in wholes.items()}
-    runs = []
-    for run in measurement.runs:
-        whole = changed.get(id(_whole(run)))
-        if whole is None:
-            runs.append(run)
-        elif run.whole is None:
-            runs.append(whole)
-        else:
-            runs.append(replace(run, record=whole.record, whole=whole))
-    return measurement.with_runs(runs)
-
-
-def _whole(run: Run) -> Run:
-    return run.whole or run
+    records = {key: run.record.with_filter_of(best) for key, run in steady.items()}
+    return measurement.with_runs(
+        [
+            run.with_record(records[id(run.record)]) if id(run.record) in records else run
+            for run in measurement.runs
+        ]
+    )
 
 
 def _is_steady(run: Run) -> bool:
@@ -49,7 +41,3 @@ def _is_steady(run: Run) -> bool:
 def _misfit(runs: list[Run], case: Case, order: int) -> float:
     """Sum of squares of what differs between runs and their predictions."""
     return sum(run.record.with_filter_of(order).aligned(run.of(case)).misfit for run in runs)
-
-
-def _filtered(run: Run, order: int) -> Run:
-    return replace(run, record=run.record.with_filter_of(order))

@@ -7,12 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from chatter.explain.criteria import (
-    CERTAIN_EVIDENCE,
-    LEAST_SHARE_IN_PART,
-    REACHES_NOTHING,
-    SIGNED_RANK_LEVEL,
-)
+from chatter.explain.criteria import CERTAIN_EVIDENCE, REACHES_NOTHING, SIGNED_RANK_LEVEL
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Measurement
@@ -84,7 +79,7 @@ def is_established(stage: Stage, others: Problem, split: Split) -> bool:
     best = stage.best
     if best.evidence - stage.evidence < CERTAIN_EVIDENCE:
         return False
-    if share_removed(stage, best, others, split) < LEAST_SHARE_IN_PART:
+    if share_removed(stage, best, others, split) < others.kind.least_share_in_part:
         return False
     runs = others.measurement.runs
     trial = others.with_effect(best.effect)

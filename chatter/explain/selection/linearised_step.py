@@ -99,7 +99,7 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
     secants = _Secants(trial, now, runs, amounts)
     begins = secants.best([values_at(start) for start in effect.starts(own)], SCREENED_STARTS)
-    if any(abs(pull) > _DRAWN for pull in now.pulls.values()):
+    if any(abs(pull) > _DRAWN for pull in problem.declared_pulls(now).values()):
         declared = {one.name: one.start for one in now.parameters if one.prior}
         sizable = [values_at(start) | declared for start in effect.sizable_starts(own)]
         begins += secants.best(sizable, _SIZABLE_STARTS)

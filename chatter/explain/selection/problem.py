@@ -69,6 +69,14 @@ class Problem:
                 found.setdefault(name, replace(one, name=name))
         return list(found.values())
 
+    def declared_pulls(self, found: Fit) -> dict[str, float]:
+        """Standard deviations by which a fit moves declared values.
+
+        What an effect adds is not declared: its usual size only helps the search.
+        """
+        added = {effect.name for effect in self.effects}
+        return {k: v for k, v in found.pulls.items() if k.partition(".")[0] not in added}
+
     def case(self, values: Mapping[str, float]) -> Case:
         """Declared case with values put in."""
         own: dict[str, dict[str, float]] = {effect.name: {} for effect in self.effects}

@@ -80,16 +80,9 @@ class Search:
 
     @property
     def out_of_tolerance(self) -> Mapping[str, float]:
-        """Declared values that the fit pulls out of their tolerances, in standard deviations.
-
-        What an effect adds is not declared: its usual size only helps the search.
-        """
-        added = {one.name for one in self.problem.effects}
-        return {
-            name: pull
-            for name, pull in self.final.pulls.items()
-            if abs(pull) > OUT_OF_TOLERANCE and name.partition(".")[0] not in added
-        }
+        """Declared values that the fit pulls out of their tolerances, in standard deviations."""
+        pulls = self.problem.declared_pulls(self.final)
+        return {name: pull for name, pull in pulls.items() if abs(pull) > OUT_OF_TOLERANCE}
 
 
 def normalised_residual(problem: Problem, found: Fit) -> dict[str, float]:

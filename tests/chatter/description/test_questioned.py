@@ -6,6 +6,8 @@ import pytest
 
 import chatter
 from chatter.description.case import loads
+from chatter.description.errors import InputError
+from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import (
     question_of_flutes,
     question_of_spectral_radius,
@@ -31,6 +33,19 @@ def test_a_value_in_the_wrong_unit_is_asked_about(path, value, words):
     case = loads(CASE).patch({path: value})
     assert any(words in one for one in questions(case))
     assert any(words in one for one in chatter.check(case).notes)
+
+
+def test_a_mode_softer_by_far_than_the_cut_is_refused_at_once():
+    """A bare number of N/um is one of N/m: methods would take hours, and say so at the end."""
+    case = loads(CASE)
+    cut = case.material.Ktc * case.cut.axial_depth
+    for share, is_refused in ((0.9e-4, True), (1.1e-4, False)):
+        soft = case.patch({"structure.mode[0].stiffness": share * cut})
+        if is_refused:
+            with pytest.raises(InputError, match=r"mode\[0\].stiffness.*bare number is in N/m"):
+                check_plausible(soft)
+        else:
+            check_plausible(soft)
 
 
 def test_what_is_usual_is_not_asked_about():

@@ -122,6 +122,16 @@ def test_values_of_the_machine_have_tolerances(folder):
     assert found.case.get(path) == pytest.approx(0.8 * case.get(path), rel=0.02)
 
 
+def without_friction(truth, missing, folder):
+    """Case on the same machine without one of its frictions."""
+    text = truth.machine_file().to_toml()
+    begin = text.index(f"[friction.{missing}]")
+    end = text.find("[", text.index("hysteresis_slope", begin))
+    file = folder / f"without_{missing}.toml"
+    file.write_text(text[:begin] + text[end:], encoding="utf-8")
+    return truth.patch({"structure.machine": str(file)})
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("missing", "named", "coulomb"),
@@ -130,12 +140,8 @@ def test_values_of_the_machine_have_tolerances(folder):
 def test_missing_friction_of_an_axis_is_named(folder, missing, named, coulomb):
     """Declared without friction on the guides of Y, or on its motor; FRFs at rest and in motion."""
     truth = load(folder / "case.toml")
-    text = truth.machine_file().to_toml()
-    begin = text.index(f"[friction.{missing}]")
-    end = text.find("[", text.index("hysteresis_slope", begin))
-    (folder / f"rubless_{named}.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
     made = measured(folder, truth, f"rub_{named}", ("y",), ("at_rest", "moving"))
-    declared = truth.patch({"structure.machine": str(folder / f"rubless_{named}.toml")})
+    declared = without_friction(truth, missing, folder)
     summary = chatter.explain(made, declared).summary()
     assert [effect["name"] for effect in summary["effects"]] == ["axis_friction"]
     found = summary["effects"][0]["parameters"]
@@ -178,11 +184,7 @@ def test_what_a_contact_and_a_nut_are_made_of_is_what_machines_have(folder):
 def test_friction_at_rest_is_twice_the_force_times_its_slope(folder, missing, named, coulomb):
     """Of another force and slope with the same product, the axis answers alike at rest."""
     truth = load(folder / "case.toml")
-    text = truth.machine_file().to_toml()
-    begin = text.index(f"[friction.{missing}]")
-    end = text.find("[", text.index("hysteresis_slope", begin))
-    (folder / f"without_{named}.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
-    case = truth.patch({"structure.machine": str(folder / f"without_{named}.toml")})
+    case = without_friction(truth, missing, folder)
     effect = effect_of(case, "axis_friction", f"coulomb_{named}")
     values = {f"coulomb_{named}": coulomb * 1.15, f"viscous_{named}": 0.0}
     stiffness, _ = effect.reported(values)[f"presliding_stiffness_{named}"]

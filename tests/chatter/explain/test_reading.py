@@ -284,3 +284,14 @@ def test_wrong_runs_are_told(tmp_path, run, said):
     )
     with pytest.raises(InputError, match=said):
         read_measurement(tmp_path)
+
+
+@pytest.mark.parametrize("rows", ["", "0,1\n"])
+def test_a_record_without_two_samples_is_told(tmp_path, rows):
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "a.csv").write_text("time [s],Fx [N]\n" + rows)
+    (tmp_path / "measurement.toml").write_text(
+        'kind = "milling"\ncase = "case.toml"\n[[run]]\nfile = "a.csv"\n'
+    )
+    with pytest.raises(InputError, match=r"a\.csv.*(2 are needed|no line of numbers)"):
+        read_measurement(tmp_path)

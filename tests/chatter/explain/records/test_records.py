@@ -17,6 +17,7 @@ from chatter.explain.comparison import compare
 from chatter.explain.data_checks.finding import NOTE, RUN
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prediction import Predictions
 from chatter.explain.records.alignment import Recorded, aligned, low_pass
 from chatter.explain.records.case_axes import in_case_axes
 from chatter.explain.records.description import Channel, RecordDescription, record_of
@@ -482,3 +483,27 @@ def test_the_order_of_the_filter_is_told_by_all_the_records(case, order, tmp_pat
     assert (found is usable) == (order == 4)
     for one in found.runs:
         assert one.record.aligned(one.of(case)).corner == pytest.approx(CORNER, rel=0.03)
+
+
+def test_the_same_run_behind_another_filter_is_predicted_anew(case, tmp_path):
+    """A search that changes the filter keeps its predictions, by the order of each."""
+    record = RecordDescription("cut", "unknown", 0.005)
+    made = measurement(case, behind_a_filter(8), tmp_path, as_in_the_case, record)
+    usable = checked(made).measurement
+    predictions = Predictions(KINDS["milling"])
+    behind_fourth = {run.name: predictions.of(case, run) for run in usable.runs}
+    found = predictions.kind.with_filter_by(usable, case)
+    for one in found.runs:
+        fourth, eighth = behind_fourth[one.name], predictions.of(case, one)
+        missed = [
+            sum(np.sum((values[name] - one.signals[name]) ** 2) for name in values)
+            for values in (fourth, eighth)
+        ]
+        assert missed[1] < 0.9 * missed[0]
+
+
+def test_compare_predicts_behind_the_filter_that_explain_finds(case, tmp_path):
+    record = RecordDescription("cut", "unknown", 0.005)
+    made = measurement(case, behind_a_filter(8), tmp_path, as_in_the_case, record)
+    # white noise of 0.005 is all that a prediction behind the right filter misses
+    assert max(one.relative for one in compare(made).errors) < 0.01
