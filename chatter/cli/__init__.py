@@ -6,6 +6,7 @@ module            responsibility
 options           options that commands share; case and machine files with their patches
 options_as_one    commands of many options take them as one dataclass
 imported_commands commands are imported when they are called, and help imports none
+quick_pictures    the library of pictures without its own documentation
 progress          progress bars; what the first use takes
 results           what every command does with its result
 report            `--report` of every command
@@ -24,6 +25,7 @@ from typing import Any
 import typer
 
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
+from chatter.cli.quick_pictures import leave_documentation_out
 
 COMMANDS = (
     "new",
@@ -82,4 +84,5 @@ def _of_all() -> None:
 
 def main() -> None:
     """Run the command line."""
+    leave_documentation_out()
     program()

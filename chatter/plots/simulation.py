@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -65,7 +65,7 @@ def plot_simulation(result: SimulationResult) -> Figure:
         for index, layer in enumerate(sorted({0, layers - 1})):
             panel = figure.add_subplot(bottom[index])
             height = result.setup.slices.height[layer] * 1e3
-            panel.set_title(f"workpiece {height:.2g} mm above the tip", loc="left")
+            panel.set_title(f"workpiece {height:.2g} mm above the tip", **style.TITLE)
             draw_workpiece(panel, result, layer)
         return figure
     if isinstance(result.setup.path, ToolCourse):
@@ -92,7 +92,7 @@ def draw_course(axes: Axes, result: SimulationResult) -> None:
     drawn = axes.scatter(x[at], y[at], c=largest, s=9.0, cmap="viridis", zorder=3)
     axes.figure.colorbar(drawn, ax=axes, label="largest force [N]")
     axes.set_aspect("equal", "datalim")
-    axes.set_title("path of the tool", loc="left")
+    axes.set_title("path of the tool", **style.TITLE)
     axes.set_xlabel("x [mm]")
     axes.set_ylabel("y [mm]")
     style.finish(axes)
@@ -103,7 +103,7 @@ def draw_feed(axes: Axes, result: SimulationResult) -> None:
     x, y = result.setup.path.position_at(result.time)
     feed = 60e3 * np.hypot(np.gradient(x, result.time), np.gradient(y, result.time))
     axes.plot(result.time, feed, color=style.BLUE, linewidth=1.2)
-    axes.set_title("feed, and spindle speed", loc="left")
+    axes.set_title("feed, and spindle speed", **style.TITLE)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("feed [mm/min]", color=style.BLUE)
     style.finish(axes)
@@ -167,7 +167,7 @@ def draw_run(
     if not values.any():
         _say(axes, "nothing moves")
     band = "whole run, by revolution" if banded else "whole run"
-    axes.set_title(band, loc="left")
+    axes.set_title(band, **style.TITLE)
     style.finish(axes)
     _legend(axes)
 
@@ -188,7 +188,7 @@ def draw_last_revolutions(
     axes.set(xlabel="spindle revolutions", ylabel=label)
     if not values.any():
         _say(axes, "nothing moves")
-    axes.set_title("last revolutions", loc="left")
+    axes.set_title("last revolutions", **style.TITLE)
     style.finish(axes)
     _legend(axes)
 
@@ -216,7 +216,8 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     values = result.force if rigid else result.displacement * 1e6
     names = ("Fx", "Fy", "Fz") if rigid else ("x", "y", "z")
     axes.set_title(
-        f"spectrum of the {'force' if rigid else 'displacement'}, last half of the run", loc="left"
+        f"spectrum of the {'force' if rigid else 'displacement'}, last half of the run",
+        **style.TITLE,
     )
     axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]" if rigid else "amplitude [µm]")
     rows = result.settled
@@ -239,6 +240,7 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     axes.set_xlim(0.0, top)
     if largest > 0.0:
         axes.set(yscale="log", ylim=(largest * _FAINTEST, largest * 2.0))
+        style.write_powers(axes.yaxis)
     style.finish(axes)
     axes.grid(visible=False, axis="x")
     axes.legend(loc="upper right", fontsize=8.0, framealpha=0.9, ncols=2)
@@ -253,15 +255,22 @@ def _highest_line(lines: Iterable[tuple[Array, Array]]) -> float:
 
 
 def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:
-    thin = {"linewidth": 0.7, "zorder": 1}
     turn = tooth / teeth
     if teeth > 1 and top / turn < 120:
-        for order in range(1, int(top / turn) + 1):
-            axes.axvline(order * turn, color="#E4E4E4", **thin)
+        revolutions = turn * np.arange(1, int(top / turn) + 1)
+        _mark_frequencies(axes, revolutions, color="#E4E4E4")
     marked = int(top / tooth + 1e-9)
-    for order in range(1, marked + 1 if marked <= 60 else 1):
-        label = "tooth passing" if order == 1 else None
-        axes.axvline(order * tooth, color=style.GREY, linestyle=(0, (4, 3)), label=label, **thin)
+    if 0 < marked <= 60:
+        passing = {"color": style.GREY, "linestyle": (0, (4, 3)), "label": "tooth passing"}
+        _mark_frequencies(axes, tooth * np.arange(1, marked + 1), **passing)
+
+
+def _mark_frequencies(axes: Axes, frequencies: Array, **look: Any) -> None:
+    """Draw lines over the whole height, as one: each of its own takes its time."""
+    over_the_height = axes.get_xaxis_transform()
+    axes.vlines(
+        frequencies, 0.0, 1.0, transform=over_the_height, linewidth=0.7, zorder=1, **look
+    )  # fmt: skip
 
 
 def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
@@ -281,7 +290,7 @@ def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
 
 def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     """Draw the displacement each time the first tooth is at +y."""
-    axes.set_title("once a revolution", loc="left")
+    axes.set_title("once a revolution", **style.TITLE)
     plane = moving_plane(result)
     axes.set(xlabel=f"{'xyz'[plane[0]]} [µm]", ylabel=f"{'xyz'[plane[1]]} [µm]")
     style.finish(axes)
@@ -321,7 +330,7 @@ def once_a_revolution(result: SimulationResult, plane: tuple[int, int] = (0, 1))
 
 def draw_wall(axes: Axes, result: SimulationResult) -> None:
     """Draw the deviation of the wall over feed and height."""
-    axes.set_title("wall, deviation (positive: too much removed)", loc="left")
+    axes.set_title("wall, deviation (positive: too much removed)", **style.TITLE)
     axes.set(xlabel="feed [mm]", ylabel="height [mm]")
     walls = result.finish.walls
     if not walls:
@@ -351,7 +360,7 @@ def _edges(middle: Array) -> Array:
 
 def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     """Draw the profile of every wall at half its height, and of the floor."""
-    axes.set_title("profiles along the feed, about their mean", loc="left")
+    axes.set_title("profiles along the feed, about their mean", **style.TITLE)
     axes.set(xlabel="feed from the start of what is evaluated [mm]", ylabel="material left [µm]")
     finish = result.finish
     if not finish.walls and finish.floor is None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm, to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _FILL_ROWS, _FILL_COLUMNS = 1000, 1000
 #: beside 0 stable, 1 chatter
 _NOT_SEARCHED = 2
+_FILLS = (style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL)
 _NO_POCKET = "no pocket between these speeds"
 #: depth shown over the highest limit, the same where some speeds have none, and over the cut
 _ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
@@ -49,7 +50,7 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
             0.0, -0.42, _pocket_list(diagram), transform=frequency.transAxes,
             fontsize=8.5, va="top", linespacing=1.5,
         )  # fmt: skip
-    limit.set_title(diagram.case.title or "Critical depth", pad=52.0, loc="left")
+    limit.set_title(diagram.case.title or "Critical depth", pad=52.0, **style.TITLE)
     return figure
 
 
@@ -161,21 +162,30 @@ def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
     beyond = ~(depth[:, None] <= _searched(diagram, left, share)[None, :])
     if diagram.is_over_speed:
         beyond[:] = False
-    axes.pcolormesh(
-        x,
-        depth * 1e3,
-        np.where(beyond, _NOT_SEARCHED, chatter),
-        cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL]),
-        shading="nearest",
-        vmin=0,
-        vmax=_NOT_SEARCHED,
-        zorder=0.5,
-        rasterized=True,
-    )
+    _paint(axes, x, np.where(beyond, _NOT_SEARCHED, chatter), top * 1e3)
     if beyond.any():
         axes.fill_between(
             [], [], facecolor=style.NOT_SEARCHED_FILL, edgecolor=style.GREY, label="not searched"
         )
+
+
+def _paint(axes: Axes, x: Array, kinds: IntegerArray, top: float) -> None:
+    """Paint kinds of points (rows, columns) from zero to the top, each column about its x.
+
+    An image is drawn many times faster than a mesh of the same cells.
+    """
+    if x[0] == x[-1]:
+        return
+    colours = to_rgba_array(_FILLS)
+    pixels = np.linspace(x[0], x[-1], x.size)
+    half = 0.5 * (pixels[1] - pixels[0])
+    sign = math.copysign(1.0, x[-1] - x[0])
+    nearest = np.searchsorted(sign * 0.5 * (x[1:] + x[:-1]), sign * pixels)
+    axes.imshow(
+        (255.0 * colours).round().astype(np.uint8)[kinds[:, nearest]],
+        extent=(x[0] - half, x[-1] + half, 0.0, top), origin="lower", aspect="auto",
+        interpolation="nearest", zorder=0.5,
+    )  # fmt: skip
 
 
 def _columns(x: Array) -> tuple[Array, IntegerArray, Array]:
@@ -349,7 +359,7 @@ def plot_map(diagram: StabilityMap) -> Figure:
         _mark_case(axes, diagram.x_axis.case_value, diagram.y_axis.case_value, x)
     axes.set_xlim(x[0], x[-1])
     axes.set(ylim=(y[0], y[-1]), xlabel=diagram.x_axis.heading, ylabel=diagram.y_axis.heading)
-    axes.set_title(diagram.case.title or "Spectral radius", pad=28.0, loc="left")
+    axes.set_title(diagram.case.title or "Spectral radius", pad=28.0, **style.TITLE)
     _name_sides(axes)
     style.finish(axes)
     extend = "max" if radius.max() > _HIGHEST_RADIUS else "neither"

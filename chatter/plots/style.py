@@ -1,5 +1,6 @@
 """One look for every picture: readable in print, distinguishable without colour vision."""
 
+import math
 from io import BytesIO
 from os import PathLike
 from typing import IO, Any
@@ -7,6 +8,7 @@ from typing import IO, Any
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 from PIL import Image
 
 from chatter.description.sections.cut import Cut
@@ -22,6 +24,9 @@ _DPI = 120
 #: of zlib: what more would save is hardly worth its time
 _COMPRESSION = 4
 _FONT = 9.0
+#: a title of axes whose ticks are below and beside them: matplotlib need not look for its place
+TITLE: dict[str, Any] = {"loc": "left", "y": 1.0}
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def new_figure(width: float, height: float, **layout: Any) -> Figure:
@@ -52,6 +57,20 @@ def mark_cut(axes: Any, cut: Cut, label: str, **look: Any) -> None:
     point = {"marker": "o", "markersize": 9, "markeredgecolor": "black", "linestyle": "none"}
     x, y = rpm(cut.spindle_speed), cut.axial_depth * 1e3
     axes.plot(x, y, **{**point, **look}, label=label, zorder=5)
+
+
+def write_powers(axis: Any) -> None:
+    """Write the powers of ten of a logarithmic axis as plain text: formulas take longer to set."""
+    axis.set_major_formatter(FuncFormatter(lambda value, _: power_of_ten(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def power_of_ten(value: float) -> str:
+    """Label of a power of ten, "10⁻³"; empty for what is none."""
+    exponent = round(math.log10(value))
+    if not math.isclose(value, 10.0**exponent, rel_tol=1e-9):
+        return ""
+    return "10" + str(exponent).translate(_RAISED)
 
 
 def finish(axes: Any) -> None:

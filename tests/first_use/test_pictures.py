@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from matplotlib.collections import QuadMesh
+from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 
 import chatter
 from chatter.description.units import from_rpm
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.lobes_before_after import LobesBeforeAfter
+from chatter.plots import style
 from chatter.plots.explanation import plot_lobes_before_after
 from chatter.plots.frf import plot_frf
 from chatter.plots.stability_diagram import _between, _draw_across_jumps, _kept, plot_limits
@@ -26,14 +27,17 @@ def over_width():
 
 def fill_of(axes):
     """Centres of the cells of the fill, and what they are: 0 stable, 1 chatter, 2 not searched."""
-    (mesh,) = (one for one in axes.collections if isinstance(one, QuadMesh))
-    corners = mesh.get_coordinates()
-    centres = 0.25 * (corners[1:, 1:] + corners[:-1, 1:] + corners[1:, :-1] + corners[:-1, :-1])
-    return (
-        centres[0, :, 0],
-        centres[:, 0, 1],
-        np.asarray(mesh.get_array()).reshape(centres.shape[:2]),
-    )
+    (image,) = axes.images
+    pixels = np.asarray(image.get_array())
+    kind = np.full(pixels.shape[:2], -1)
+    for number, fill in enumerate(
+        (style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL)
+    ):
+        kind[(pixels == np.round(255.0 * to_rgba_array(fill))).all(axis=-1)] = number
+    assert (kind >= 0).all()
+    left, right, bottom, top = image.get_extent()
+    rows, columns = (np.arange(0.5, count) / count for count in kind.shape)
+    return left + (right - left) * columns, bottom + (top - bottom) * rows, kind
 
 
 def labels_of(axes):
