@@ -7,6 +7,7 @@ options           options that commands share; case and machine files with their
 options_as_one    commands of many options take them as one dataclass
 imported_commands commands are imported when they are called, and help imports none
 quick_pictures    the library of pictures without its own documentation
+start_up          a word while the program is loaded
 progress          progress bars; what the first use takes
 results           what every command does with its result
 report            `--report` of every command
@@ -26,6 +27,7 @@ import typer
 
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
 from chatter.cli.quick_pictures import leave_documentation_out
+from chatter.cli.start_up import START_UP
 
 COMMANDS = (
     "new",
@@ -85,4 +87,5 @@ def _of_all() -> None:
 def main() -> None:
     """Run the command line."""
     leave_documentation_out()
+    START_UP.begin()
     program()

@@ -6,23 +6,20 @@ import itertools
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from chatter.cli import options
 from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
-from chatter.description.assignments import parse_assignments
-from chatter.description.bare_speeds import refuse_bare_speed_assignments
 from chatter.description.case import Case
-from chatter.description.errors import InputError
-from chatter.description.path import field_at, parse_path
-from chatter.description.ranges import without_count
 from chatter.description.usual_units import usual_unit
 from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.bifurcation import BifurcationDiagram
+
+
+_MOST_CUTS = 100_000
 
 
 def bifurcation(
@@ -43,15 +40,18 @@ def bifurcation(
 ) -> None:
     """Simulate a case over a range of one value: where chatter sets in, and of what kind."""
     description = options.patched_case(case, assignments)
-    path, values = _range(vary, count)
     from chatter.engine.loop import run
     from chatter.studies.bifurcation import bifurcation as run_bifurcation
+    from chatter.studies.parameter_axis import axis_of
+
+    axis = axis_of(vary, description, "--vary", count, _MOST_CUTS)
+    values = [value.patch[axis.path] for value in axis.values]
 
     folder = options.output_folder(out, case.stem)
     with progress_bar("cuts of the bifurcation diagram, step by step", run) as progress:
         diagram = run_bifurcation(
             description,
-            path,
+            axis.path,
             values,
             folder=folder,
             progress=progress,
@@ -60,32 +60,6 @@ def bifurcation(
         )
     options.print_coefficients(description)
     present(diagram, folder, json=json, words=_print_onsets)
-
-
-def _range(vary: str, count: int) -> tuple[str, list[float]]:
-    path, equals, span = vary.partition("=")
-    span, own = without_count(span)
-    count = count if own is None else own
-    low, dots, high = span.partition("..")
-    if not (equals and dots and path.strip()):
-        raise InputError(
-            f'--vary "{vary}": PATH=FROM..TO:COUNT is required, such as '
-            'cut.axial_depth="1 mm..4 mm:60"'
-        )
-    if not 2 <= count <= 100_000:
-        raise InputError(f"--count {count}: a number from 2 to 100000 is required")
-    path = path.strip()
-    field = field_at(Case, parse_path(path))
-    if field is None:
-        raise InputError(f"--vary {path}: there is no such quantity in a case")
-    if field.dimension == "angular_speed":
-        for end in (low, high):
-            refuse_bare_speed_assignments(Case, parse_assignments([f"{path}={end}"]), "--vary")
-    try:
-        ends = [field.read(end.strip().strip('"')) for end in (low, high)]
-    except ValueError as error:
-        raise InputError(f"--vary {path}: {error}") from None
-    return path, list(np.linspace(*ends, count))
 
 
 def _print_onsets(diagram: BifurcationDiagram) -> None:

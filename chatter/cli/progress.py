@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from rich.progress import (
     BarColumn,
@@ -17,6 +18,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from chatter.cli.start_up import START_UP
 from chatter.report.console import MESSAGES, print_message
 
 #: s without a word after which a line is printed where there is no terminal to draw a bar on
@@ -27,6 +29,11 @@ NEXT_LINE = 15.0
 LONG = 60.0
 #: s of work before it ends within which its duration is no news
 _REST = 20.0
+#: s from look to look whether there is something to print
+_LOOKED_EVERY = 0.5
+#: two estimates this far apart, s, and as near as this share are one to announce; so is any after
+#: this long, s: the first parts of a search are hardly like the others
+_APART, _NEAR, _LONG_ENOUGH = 2.0, 0.3, 10.0
 #: s of work from which its pace is known, and that it is taken over
 _PACE = 1.0
 _OF_LATE = 20.0
@@ -59,6 +66,8 @@ class RunningWork:
         self._reports: deque[tuple[float, int]] = deque()
         self._newest: tuple[float, int, int] | None = None
         self._announced = False
+        #: elapsed time and total of an estimate that waits for another like it, s
+        self._estimate: tuple[float, float] | None = None
 
     def __call__(self, done: int, total: int) -> None:
         """Report how many of all parts are done."""
@@ -72,7 +81,18 @@ class RunningWork:
         # the pace is that of late: parts of a search differ
         while len(self._reports) > 1 and now - self._reports[1][0] > _OF_LATE:
             self._reports.popleft()
+        if self._began_slowly():
+            self._reports.popleft()
         self._newest = (now, done, total)
+
+    def _began_slowly(self) -> bool:
+        """Whether the first parts took what later ones do not: compiled code is read, say."""
+        if len(self._reports) < 3 or self._reports[0][1]:
+            return False
+        (begun, before), (first, some), (last, more) = (self._reports[k] for k in (0, 1, -1))
+        return last - first >= _APART and 2 * (some - before) / (first - begun) < (more - some) / (
+            last - first
+        )
 
     def stage(self, description: str) -> None:
         """Report that another part of the work has begun, under its own description."""
@@ -83,7 +103,7 @@ class RunningWork:
         self.description = description
         self._begun = self._clock()
         self._reports.clear()
-        self._newest, self._announced = None, False
+        self._newest, self._announced, self._estimate = None, False, None
 
     @property
     def counts(self) -> tuple[int, int | None]:
@@ -129,8 +149,21 @@ class RunningWork:
         left = self.remaining()
         if self._announced or left is None or left < max(LONG - self.elapsed, _REST):
             return None
+        if not self._is_settled(self.elapsed + left):
+            return None
         self._announced = True
         return f"{self.description}: about {in_words(self.elapsed + left)} in all; Ctrl-C ends it"
+
+    def _is_settled(self, total: float) -> bool:
+        """Whether an estimate of the whole, s, is like one before it, or has had time to be."""
+        now = self.elapsed
+        if now >= _LONG_ENOUGH:
+            return True
+        before = self._estimate
+        if before is not None and now - before[0] < _APART:
+            return False
+        self._estimate = (now, total)
+        return before is not None and abs(total - before[1]) <= _NEAR * total
 
 
 def report_stage(work: RunningWork, description: str, share: float) -> None:
@@ -179,7 +212,7 @@ def running(description: str) -> Iterator[RunningWork]:
 @contextmanager
 def _shown(work: RunningWork) -> Iterator[RunningWork]:
     ended = threading.Event()
-    shown = _on_terminal if MESSAGES.is_terminal else _in_lines
+    shown = _on_terminal if MESSAGES.is_terminal else partial(_in_lines, START_UP.end())
     thread = threading.Thread(target=shown, args=(work, ended), daemon=True)
     thread.start()
     try:
@@ -207,11 +240,15 @@ def _on_terminal(work: RunningWork, ended: threading.Event) -> None:
                 bar.console.print(sentence, markup=False)
 
 
-def _in_lines(work: RunningWork, ended: threading.Event) -> None:
-    pause = FIRST_LINE
-    while not ended.wait(pause):
-        print_message(work.announcement() or work.line())
-        pause = NEXT_LINE
+def _in_lines(silent: float, work: RunningWork, ended: threading.Event) -> None:
+    """Print lines on work before which nothing was said for so long, s."""
+    due = time.monotonic() + max(FIRST_LINE - silent, 0.0)
+    while not ended.wait(min(_LOOKED_EVERY, max(due - time.monotonic(), 0.0))):
+        sentence = work.announcement()
+        if sentence is None and time.monotonic() < due:
+            continue
+        print_message(sentence or work.line())
+        due = time.monotonic() + NEXT_LINE
 
 
 def announce_compilation(driver: object | None = None) -> None:

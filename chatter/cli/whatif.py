@@ -43,11 +43,13 @@ class WhatIfOptions:
         typer.Option(
             "--vary",
             metavar="PATH=VALUES",
-            help='"1 mm, 2 mm", "1 mm..4 mm" or "+-10%"; once for an overlay, twice for a heat '
+            help='"1 mm, 2 mm", "1 mm..4 mm:9" or "+-10%"; once for an overlay, twice for a heat '
             "map, more with --tornado. Paths into the machine of a case begin with machine.",
         ),
     ] = None
-    count: Annotated[int | None, typer.Option("--count", help="Values of a range [5].")] = None
+    count: Annotated[
+        int | None, typer.Option("--count", help="Values of a range that gives none [5].")
+    ] = None
     result: Annotated[
         str | None, typer.Option("--result", help="lobes, critical depth, forces, surface or frf.")
     ] = None

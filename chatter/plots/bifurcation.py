@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _COLOURS = {"stable": BLUE, "chatter": RED}
 #: axes of less motion than this share of the other are left out
 _STILL = 1e-3
+#: room beside the first and the last value, as a share of their range
+_BESIDE = 0.015
 
 
 def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
@@ -57,7 +59,9 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     )
     name = diagram.path.split(".")[-1].replace("_", " ")
     values = [point.value * factor for point in diagram.points]
-    panels[-1].set_xlim(min(values), max(values))
+    # the sections at both ends stand beside the frame, not half behind it
+    beside = _BESIDE * (max(values) - min(values)) or _BESIDE * abs(values[0]) or 1.0
+    panels[-1].set_xlim(min(values) - beside, max(values) + beside)
     panels[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
     if diagram.case.title:
         panels[0].set_title(diagram.case.title, loc="left")

@@ -41,7 +41,7 @@ def plot_optimum(found: Optimum) -> Figure:
     )
     axes = figure.add_subplot(grid[0])
     draw_slice(axes, found)
-    axes.set_title(_title(found), loc="left", pad=52.0)
+    axes.set_title(_title(found), loc="left", pad=64.0)
     if over_radial_depths:
         draw_radial_depths(figure.add_subplot(grid[1]), found)
     return figure
@@ -87,7 +87,7 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
     )
     handles += [Patch(facecolor=c, edgecolor=style.GREY, label=text) for c, text in fills]
     axes.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, fontsize=7.5,
+        handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=7.5,
         frameon=False, borderaxespad=0.2,
     )  # fmt: skip
     axes.set_xlim(speed[0], speed[-1])
@@ -99,7 +99,7 @@ def _kept(limits: Limits) -> str:
     """What the darker fill keeps: margins, or nothing yet of what a confidence takes off."""
     if limits.depth_margin or limits.speed_margin:
         return "stable, with margins, all limits kept"
-    return f"stable, all limits kept; a confidence of {limits.confidence:g} takes off more"
+    return f"all limits kept; a confidence of {limits.confidence:g} takes off more"
 
 
 def _elsewhere(known: np.ma.MaskedArray, shown: np.ma.MaskedArray) -> str:

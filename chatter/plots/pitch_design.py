@@ -23,7 +23,7 @@ def plot_pitch(found: PitchResult) -> Figure:
     limits, families = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
     draw_limits(limits, found)
     draw_families(families, found)
-    limits.set_title(found.case.title or "Pitch angles", loc="left", pad=38.0)
+    limits.set_title(found.case.title or "Pitch angles", loc="left", pad=24.0)
     return figure
 
 
@@ -37,10 +37,12 @@ def draw_limits(axes: Axes, found: PitchResult) -> None:
         known = np.where(limits < found.max_depth, limits * 1e3, np.nan)
         axes.plot(speed, known, color=colour, linewidth=1.6, label=f"{name}: {angles} deg")
         lowest = float(limits.min()) * 1e3
+        # below all of its own curve; beside the axes, where no other one passes through it
         axes.axhline(lowest, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
         axes.annotate(
             f"{lowest:.3g} mm", (1.0, lowest), xycoords=("axes fraction", "data"),
-            ha="right", va="bottom", fontsize=8.0, color=colour,
+            xytext=(4, 0), textcoords="offset points", ha="left", va="center", fontsize=8.0,
+            color=colour,
         )  # fmt: skip
     axes.set_xlim(speed[0], speed[-1])
     axes.set(ylim=(0.0, None), xlabel="spindle speed [rpm]", ylabel="critical depth [mm]")

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from chatter.studies.uncertainty.monte_carlo import Uncertainty
 
 _BINS = 24
+#: room on both sides of the distribution, where the depth of the cut is written
+_BESIDE = 0.05
 #: numbers of samples at which the convergence is drawn
 _CONVERGENCE_POINTS = 60
 #: samples drawn as thin lines
@@ -74,9 +76,11 @@ def draw_distribution(axes: Axes, found: Uncertainty) -> None:
                 axes.axvline(value, color=style.BLUE, linestyle=line, linewidth=1.4)
     depth = found.case.cut.axial_depth * 1e3
     axes.axvline(depth, color="black", linewidth=1.4, linestyle=(0, (4, 2)))
+    low, high = axes.get_xlim()
+    axes.set_xlim(low - _BESIDE * (high - low), high + _BESIDE * (high - low))
     axes.annotate(
         "depth of the cut", (depth, 0.99), xycoords=("data", "axes fraction"), rotation=90,
-        ha="right", va="top", fontsize=7.5,
+        xytext=(-2, 0), textcoords="offset points", ha="right", va="top", fontsize=7.5,
     )  # fmt: skip
     missing = len(found.operating) - limit.size
     beyond = f" ({missing} samples above {found.max_depth * 1e3:.3g} mm)" if missing else ""

@@ -166,6 +166,7 @@ def _mark_verdicts(axes: Axes, study: WhatIf, x: np.ndarray, y: np.ndarray) -> N
             axes.annotate(
                 verdict, (x[index], y[index]), xytext=(0, 8), textcoords="offset points",
                 ha="center", fontsize=7.5,
+                bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none"},
             )  # fmt: skip
 
 

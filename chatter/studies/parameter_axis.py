@@ -9,29 +9,38 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
-from chatter.description.ranges import without_count
+from chatter.description.path import info_at, parse_path
 from chatter.description.units import rpm, unit_factor
+from chatter.description.wording import unknown_key
 from chatter.stability.search_range import spindle_speeds
+from chatter.studies.counted_range import counted_range
 from chatter.studies.model import field_of, value_of
-from chatter.studies.whatif.variation import Value, Variation, read_variation, variation
+from chatter.studies.whatif.variation import (
+    MOST_VALUES,
+    Value,
+    Variation,
+    read_variation,
+    variation,
+)
 
 SPEED_PATH, DEPTH_PATH = "cut.spindle_speed", "cut.axial_depth"
-_MOST_VALUES = 2000
 _EXAMPLE = 'such as cut.radial_depth="0.5 mm..10 mm:40"'
 
 #: text of the command line, or a path and its values
 AxisGiven = str | tuple[str, Sequence[Any]]
 
 
-def axis_of(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
+def axis_of(
+    given: AxisGiven, case: Case, option: str, count: int, most: int = MOST_VALUES
+) -> Variation:
     """Axis from what is given, its numbers ascending.
 
     Given is ``"PATH=FROM..TO[:COUNT]"``, or a path and quantities as text or numbers in SI; `count`
-    is for a range that gives none, and messages name the option. InputError if there is no such
-    path, it takes no quantity, or the range is empty.
+    is for a range that gives none, no range has more than `most`, and messages name the option.
+    InputError if there is no such path, it takes no quantity, or the range is empty.
     """
     try:
-        found = _read(given, case, option, count)
+        found = _read(given, case, option, count, most)
     except InputError as error:
         messages = [text.replace("--vary", option) for text in error.messages]
         raise InputError(messages) from None
@@ -44,7 +53,7 @@ def axis_of(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
     return Variation(found.path, tuple(ascending), found.unit)
 
 
-def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
+def _read(given: AxisGiven, case: Case, option: str, count: int, most: int) -> Variation:
     if not isinstance(given, str):
         path, values = given
         _require_quantity(case, path, option)
@@ -55,21 +64,17 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
             f"{option} {formatted(given)}: PATH=FROM..TO[:COUNT] is required, {_EXAMPLE}"
         )
     _require_quantity(case, path.strip(), option)
-    span, own = without_count(span)
-    count = count if own is None else own
-    if not 2 <= count <= _MOST_VALUES:
-        raise InputError(
-            f"{option} {path.strip()}: a count of {count} is given; 2 to {_MOST_VALUES} is required"
-        )
+    span, count = counted_range(f"{option} {path.strip()}", span, count, most)
     return read_variation(f"{path}={span}", case, count)
 
 
 def _require_quantity(case: Case, path: str, option: str) -> None:
     if field_of(case, path) is None:
-        raise InputError(
-            f"{option} {formatted(path)}: there is no such quantity in a case; a path to one is "
-            f"wanted, {_EXAMPLE}"
-        )
+        why = f"a path to one is wanted, {_EXAMPLE}"
+        steps = parse_path(path)
+        if info_at(Case, steps) is None:
+            why = unknown_key(Case, steps)
+        raise InputError(f"{option} {formatted(path)}: there is no such quantity in a case; {why}")
 
 
 def speed_axis(case: Case) -> Variation:

@@ -1,6 +1,7 @@
 """Pictures answer what they are looked at for: no staircases, no white, no empty space."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,10 @@ from chatter.explain.lobes_before_after import LobesBeforeAfter
 from chatter.plots import style
 from chatter.plots.explanation import plot_lobes_before_after
 from chatter.plots.frf import plot_frf
+from chatter.plots.optimum import _kept as _kept_of_an_optimum
+from chatter.plots.pitch_design import draw_limits
 from chatter.plots.stability_diagram import _between, _draw_across_jumps, _kept, plot_limits
+from chatter.plots.uncertainty import draw_distribution
 from chatter.studies.bifurcation import BifurcationDiagram, BifurcationPoint
 from chatter.studies.diagram_over_axes import lobes_over
 from tests.first_use.shop import cut
@@ -153,3 +157,52 @@ def test_a_lone_value_between_jumps_is_marked():
     _draw_across_jumps(axes, x, crossings, np.array([1, 2]))
     drawn = {tuple(map(float, np.round(line.get_ydata(), 6))) for line in axes.lines}
     assert drawn == {(0.67, 0.71), (0.29, 0.51, 0.71), (0.29, 0.42)}
+
+
+def test_sections_at_the_ends_of_a_bifurcation_stand_within_the_frame():
+    """Half of the first and the last section lay behind the frame."""
+    section = np.array([[1e-6, 2e-6, 0.0]])
+    points = [BifurcationPoint(v, section, "stable", "none", math.nan) for v in (1e-3, 2e-3)]
+    axes = BifurcationDiagram(cut(), "cut.axial_depth", tuple(points)).plot().axes[0]
+    low, high = axes.get_xlim()
+    assert low < 1.0
+    assert high > 2.0
+
+
+def test_the_depth_of_the_cut_is_written_within_the_axes_of_the_distribution():
+    """It stood across the numbers of the axis."""
+    limits = np.linspace(0.6e-3, 1.2e-3, 50)
+    found = SimpleNamespace(
+        operating=limits,
+        max_depth=5e-3,
+        case=cut(),
+        operating_quantiles=lambda: limits[[2, 25, 47]],
+    )
+    figure = Figure(layout="constrained")
+    axes = figure.subplots()
+    draw_distribution(axes, found)
+    figure.canvas.draw()
+    (words,) = (one for one in axes.texts if one.get_text() == "depth of the cut")
+    assert words.get_window_extent().x0 >= axes.get_window_extent().x0
+
+
+def test_lowest_limits_of_a_pitch_design_stand_beside_the_curves():
+    """ "3.74 mm" was written across the curve."""
+    speeds = from_rpm(np.linspace(4500.0, 6500.0, 5))
+    designs = [
+        SimpleNamespace(limits=np.full(5, depth), pitch=(90.0,) * 4) for depth in (1.4e-3, 3.7e-3)
+    ]
+    found = SimpleNamespace(speeds=speeds, original=designs[0], best=designs[1], max_depth=9e-3)
+    figure = Figure(layout="constrained")
+    axes = figure.subplots()
+    draw_limits(axes, found)
+    figure.canvas.draw()
+    assert [one.get_text() for one in axes.texts] == ["1.4 mm", "3.7 mm"]
+    for words in axes.texts:
+        assert words.get_window_extent().x0 >= axes.get_window_extent().x1
+
+
+def test_the_legend_of_an_optimum_is_no_wider_than_its_axes():
+    """A quarter of the picture was empty beside it."""
+    limits = SimpleNamespace(depth_margin=0.0, speed_margin=0.0, confidence=0.95)
+    assert len(_kept_of_an_optimum(limits)) <= 52

@@ -69,7 +69,7 @@ def sentences(study: WhatIf) -> list[str]:
     """One sentence for each thing that changed."""
     if study.layout == "tornado":
         return _tornado(study)
-    found = []
+    found = _alone(study)
     for index, one in enumerate(study.variations):
         first, last = _ends(study, index)
         if first is last:
@@ -80,6 +80,15 @@ def sentences(study: WhatIf) -> list[str]:
     return [
         *found, *_extremes(study), *_chattering(study), *_without_effect(study), *failures(study),
     ]  # fmt: skip
+
+
+def _alone(study: WhatIf) -> list[str]:
+    """Sentence on the only point of a study: there is nothing that it could be compared with."""
+    if len(study.outcomes) != 1 or study.outcomes[0].failure:
+        return []
+    quantity = study.measure.quantities[study.quantity]
+    value = value_text(quantity, study.outcomes[0], study.quantity)
+    return [f"{title_of(study, quantity)}: {value} at {_where(study, 0)}"]
 
 
 def _chattering(study: WhatIf) -> list[str]:

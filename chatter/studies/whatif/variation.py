@@ -18,8 +18,8 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
-from chatter.description.ranges import without_count
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
+from chatter.studies.counted_range import counted_range
 from chatter.studies.model import PREFIX, field_of, value_of
 
 if TYPE_CHECKING:
@@ -27,8 +27,11 @@ if TYPE_CHECKING:
 
 #: points of a range where the count is not given
 DEFAULT_COUNT = 5
-_MOST_VALUES = 2000
+#: values of a path at the most
+MOST_VALUES = 2000
 _RELATIVE = re.compile(rf"^\s*(?:\+-|\+/-|±)\s*({NUMBER})\s*%\s*$")
+#: a change of which the unit is missing
+_BARE_CHANGE = re.compile(rf"^\s*(?:\+-|\+/-|±)\s*({NUMBER})\s*$")
 #: a range of whole numbers, such as those of teeth
 _WHOLE_RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*(?::\s*(\d+)\s*)?")
 _PLAIN = str.maketrans("", "", '"[]{}')
@@ -79,6 +82,12 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     relative = _RELATIVE.match(given)
     if relative:
         return _relative(model, path, float(relative[1]) / 100.0, kind)
+    bare_change = _BARE_CHANGE.match(given)
+    if bare_change:
+        raise InputError(
+            f"--vary {path}: {formatted(given.strip())} has no unit; a change is written in "
+            f'percent of what stands, "+-{bare_change[1]}%"'
+        )
     parts = _split(given)
     if not parts:
         raise InputError(f"--vary {path}: there are no values; give some, {_EXAMPLE}")
@@ -145,8 +154,8 @@ def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | No
 
 
 def _listed(path: str, pairs: list[tuple[str, Any]], kind: QuantityField | None) -> Variation:
-    if len(pairs) > _MOST_VALUES:
-        raise InputError(f"{path}: {len(pairs)} values; at most {_MOST_VALUES} are allowed")
+    if len(pairs) > MOST_VALUES:
+        raise InputError(f"{path}: {len(pairs)} values; at most {MOST_VALUES} are allowed")
     unit = _unit(path, [value for _, value in pairs], kind)
     dimension = kind.dimension if kind is not None else "number"
     values = []
@@ -189,10 +198,8 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
 
 
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
-    text, own = without_count(text)
-    count = next(one for one in (own, count, DEFAULT_COUNT) if one is not None)
-    if not 2 <= count <= _MOST_VALUES:
-        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is required")
+    where = f"--vary {path}"
+    text, count = counted_range(where, text, DEFAULT_COUNT if count is None else count, MOST_VALUES)
     low, _, high = (part.strip().strip('"') for part in text.partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
@@ -215,8 +222,8 @@ def _whole_numbers(path: str, low: int, high: int, count: int | None) -> list[st
         raise InputError(f"--vary {path}: the range is empty: {low} is not less than {high}")
     every = high - low + 1
     chosen = every if count is None else min(max(count, 2), every)
-    if chosen > _MOST_VALUES:
-        raise InputError(f"--vary {path}: {chosen} values; at most {_MOST_VALUES} are allowed")
+    if chosen > MOST_VALUES:
+        raise InputError(f"--vary {path}: {chosen} values; at most {MOST_VALUES} are allowed")
     return [str(round(one)) for one in np.linspace(low, high, chosen)]
 
 
@@ -226,11 +233,13 @@ def _text(number: float, unit: str) -> str | float:
 
 def _relative(model: Model, path: str, share: float, kind: QuantityField | None) -> Variation:
     """Two values a share below and above what stands; of all of them where the path has [*]."""
+    if share == 0.0:
+        raise InputError(f"--vary {path}: a change of 0 % varies nothing")
     standing = value_of(model, path)
     if kind is None or standing is None:
         raise InputError(
-            f"{model.name}: --vary {path}: there is no quantity to take {share:.3g} of; "
-            "give values instead"
+            f"{model.name}: --vary {path}: there is no quantity of which {100.0 * share:.3g} % "
+            "could be taken; give values instead"
         )
     several = isinstance(standing, tuple)
     numbers = standing if several else (standing,)

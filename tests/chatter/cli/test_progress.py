@@ -99,6 +99,32 @@ def test_minutes_are_announced_once(clock):
     assert work.announcement() is None
 
 
+def test_parts_that_were_slow_to_begin_are_no_pace(clock):
+    """A search of two minutes was announced with seven: its first cuts read compiled code."""
+    work = RunningWork("search", clock)
+    work(0, 1000)
+    clock.now += 4.0
+    work(14, 1000)
+    # at this pace 286 s; it waits for another estimate like it
+    assert work.announcement() is None
+    for done in range(24, 64, 10):  # ten a second from now on
+        clock.now += 1.0
+        work(done, 1000)
+    assert work.remaining() == pytest.approx((1000 - 54) / 10.0)
+    assert work.announcement() is None
+    clock.now += 2.0
+    work(74, 1000)
+    assert work.announcement() == "search: about 2 min in all; Ctrl-C ends it"
+
+
+def test_the_first_line_counts_from_the_last_word(monkeypatch, capsys):
+    monkeypatch.setattr(progress, "FIRST_LINE", 5.0)
+    monkeypatch.setattr(progress.START_UP, "end", lambda: 4.9)
+    with running("critical depth"):
+        time.sleep(0.4)
+    assert "critical depth: 0 s so far" in capsys.readouterr().err
+
+
 def test_another_part_counts_and_is_timed_anew(clock):
     """ "all 34 done, evaluating the result for 2 min" said neither of what nor how far."""
     work = RunningWork("limits at all speeds", clock)

@@ -1,0 +1,43 @@
+"""The program says that it is loaded, where that takes long, and only then."""
+
+import threading
+import time
+
+from chatter.cli import start_up
+from chatter.cli.start_up import StartUp, is_importing
+
+
+def test_an_import_is_seen(tmp_path, monkeypatch):
+    (tmp_path / "module_that_takes_long.py").write_text(
+        "import time\ntime.sleep(0.5)\n", encoding="utf-8"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    thread = threading.Thread(target=__import__, args=("module_that_takes_long",))
+    thread.start()
+    time.sleep(0.2)
+    assert is_importing(thread)
+    thread.join()
+    assert not is_importing(thread)
+
+
+def test_a_word_is_said_while_it_imports(capsys, monkeypatch):
+    monkeypatch.setattr(start_up, "_SAID_AFTER", 0.05)
+    monkeypatch.setattr(start_up, "_LOOKED_EVERY", 0.05)
+    monkeypatch.setattr(start_up, "is_importing", lambda thread: True)
+    of_program = StartUp()
+    of_program.begin()
+    time.sleep(0.4)
+    assert capsys.readouterr().err.strip() == "loading the program ..."
+    # the word was news: what follows counts from it, once
+    assert 0.0 < of_program.end() < 0.4
+    assert of_program.end() == 0.0
+
+
+def test_a_question_that_waits_is_no_silence(capsys, monkeypatch):
+    monkeypatch.setattr(start_up, "_SAID_AFTER", 0.05)
+    monkeypatch.setattr(start_up, "_LOOKED_EVERY", 0.05)
+    of_program = StartUp()
+    of_program.begin()
+    time.sleep(0.3)
+    assert of_program.end() > 0.2
+    assert capsys.readouterr().err == ""
