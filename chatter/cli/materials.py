@@ -31,14 +31,16 @@ def materials(
     json: options.Json = False,
 ) -> None:
     """List or search the table of materials: coefficients, source, range."""
-    from chatter.description.material_table import read_material_table
+    from chatter.description.material_table import read_material_table, words_of_family
     from cutting.material.table import MATERIALS, found_rows
 
     rows = MATERIALS if table is None else read_material_table(table)
     found = found_rows(words or (), rows)
     if not found:
+        family = words_of_family(" ".join(words or ()), rows)
         raise InputError(
-            f"no row has {' and '.join(words or ())}; `chatter materials` lists all {len(rows)}"
+            f"no row has {' and '.join(words or ())}; {family and family + '; '}"
+            f"`chatter materials` lists all {len(rows)}"
         )
     if json:
         print_json({name: _summary(row) for name, row in found.items()})

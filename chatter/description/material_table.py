@@ -13,6 +13,7 @@ from chatter.description.law_section import FORCE_LAWS
 from chatter.description.toml_document import parse_document, read_text
 from chatter.description.units import QuantityError, parse
 from cutting.keys import Key, with_defaults
+from cutting.material.families import family_of
 from cutting.material.row import MaterialRow
 from cutting.material.table import MATERIALS
 
@@ -59,6 +60,10 @@ def read_material_table(path: str | Path) -> dict[str, MaterialRow]:
     return rows
 
 
+#: likeness of a name from which on it is taken for a misspelt one, before a grade without a row
+_MISSPELT = 0.8
+
+
 def row_named(name: str, rows: Mapping[str, MaterialRow] = MATERIALS) -> MaterialRow:
     """Row of a table; ValueError with the nearest names where there is none."""
     row = rows.get(name)
@@ -76,9 +81,31 @@ def _hint(name: str, rows: Mapping[str, MaterialRow]) -> str:
     if len(of_grade) > 1:
         listed = ", ".join(of_grade[:-1])
         return f"it is a grade of {listed} and {of_grade[-1]}; "
-    near = difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
+    misspelt = difflib.get_close_matches(name[:60], rows, n=1, cutoff=_MISSPELT)
+    family = "" if of_grade or misspelt else words_of_family(name, rows)
+    if family:
+        return f"{family}; "
+    near = misspelt or difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
     meant = of_grade or [f'"{one}"' for one in near]
     return f"did you mean {meant[0]}? " if meant else ""
+
+
+def words_of_family(grade: str, rows: Mapping[str, MaterialRow]) -> str:
+    """What a grade without a row is by its designation, and the nearest rows; else empty."""
+    family = family_of(grade)
+    if family is None:
+        return ""
+    near = [
+        f'"{name}"'
+        for name, row in rows.items()
+        if any(f"group {group}" in row.examples for group in family.groups)
+    ]
+    if not near:
+        return (
+            f"by its name it is {family.name}, of which there is no row: `chatter coefficients` "
+            "finds coefficients by a few cuts"
+        )
+    return f"by its name it is {family.name}; the nearest rows are {', '.join(near)}"
 
 
 def _rows_of_grade(grade: str, rows: Mapping[str, MaterialRow]) -> list[str]:

@@ -51,12 +51,14 @@ def check_plausible(case: Case) -> None:
     helix = case.tool.helix
     angles = helix if isinstance(helix, tuple) else (helix,)
     deepest = max(case.cut.axial_depth, _value(case, "lobes.depths.to") or 0.0)
+    where = "cut.axial_depth" if deepest == case.cut.axial_depth else "lobes.depths.to"
     lag = max(abs(math.tan(angle)) for angle in angles) * deepest / (0.5 * case.tool.diameter)
     if not problems and lag > _LARGEST_LAG:
         problems.append(
-            f"{case.name}: tool.helix: the edge winds {lag / (2.0 * math.pi):.3g} times around the "
-            f"tool within {deepest * 1e3:g} mm; at most {_LARGEST_LAG / (2.0 * math.pi):.0f} are "
-            "allowed"
+            f"{case.name}: {where}: within {deepest * 1e3:g} mm the edge winds "
+            f"{lag / (2.0 * math.pi):.3g} times around the tool, with its tool.diameter and "
+            f"tool.helix; at most {_LARGEST_LAG / (2.0 * math.pi):.0f} are allowed; a bare number "
+            "is in m"
         )
     wave = case.tool.serration
     if not problems and wave is not None and deepest > _MOST_WAVES * wave.wavelength:

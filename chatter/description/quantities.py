@@ -79,6 +79,8 @@ class QuantityField:
             return "0"
         if self.dimension == "angle":
             return f"{math.degrees(bound):g} deg"
+        if self.dimension == "length" and abs(bound) < 1.0:
+            return f"{bound * 1e3:g} mm"
         return f"{bound:g} {units.DIMENSIONS[self.dimension].unit}".rstrip()
 
     def json_schema(self) -> dict:

@@ -12,7 +12,7 @@ from typing import Any
 from chatter.description.path import Step, field_at
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.tool import Tool
-from chatter.description.units import QuantityError, parse
+from chatter.description.units import QuantityError, parse, rpm
 
 #: key as a shop states it -> key that it stands for
 STATED = {"cutting_speed": "spindle_speed", "feed_rate": "feed_per_tooth"}
@@ -86,7 +86,14 @@ def _feed_per_tooth(cut: Mapping[str, Any], tool: Any) -> float | None:
     teeth = tool.get("teeth") if isinstance(tool, Mapping) else getattr(tool, "teeth", None)
     if feed is None or not speed or not isinstance(teeth, int) or teeth < 1:
         return None
-    return feed * 2.0 * math.pi / (speed * teeth)
+    chip, most = feed * 2.0 * math.pi / (speed * teeth), field_at(Cut, ("feed_per_tooth",)).at_most
+    if chip > most:
+        raise ValueError(
+            f"cut.feed_rate: {feed * 6e4:.4g} mm/min at {rpm(speed):.4g} rpm is {chip * 1e3:.4g} "
+            f"mm for each of {teeth} teeth; at most {most * 1e3:g} mm is allowed; a unit may be "
+            "wrong, that of the speed too"
+        )
+    return chip
 
 
 _SOLVED: dict[str, Callable[[Mapping[str, Any], Any], float | None]] = {

@@ -108,6 +108,8 @@ _QUANTITY = re.compile(
     rf"(?:\s*(?:\+-|\+/-|±)\s*(?P<deviation>{NUMBER}))?\s*(?P<unit>.*?)\s*$",
     re.IGNORECASE,
 )
+#: of a unit that something stands behind
+_LATE_DEVIATION = re.compile(r"\+-|\+/-|±")
 _DECIMAL_COMMA = re.compile(r"^\s*[+-]?[0-9]+,[0-9]")
 #: pint evaluates what it reads, powers of powers too: only names and powers of a digit reach it
 _UNIT = re.compile(
@@ -225,6 +227,11 @@ def asked_of_library(unit: str, dimension: str) -> float:
 def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
     """Return pint's unit and one of it in base units."""
     known = _unit_of_library(unit, WORDS)
+    if known is None and _LATE_DEVIATION.search(unit):
+        raise QuantityError(
+            "has its standard deviation behind the unit; write both numbers before it, such as "
+            '"1650 +- 80 MPa"'
+        )
     if known is None:
         raise QuantityError(f"has the unknown unit {formatted(unit)}; {_wanted(dimension)}")
     parsed, one, proportional = known

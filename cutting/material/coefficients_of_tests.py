@@ -26,10 +26,15 @@ ROWS: dict[str, MaterialRow] = {
         (631e6, 99e6, 273e6), (13e3, 10e3, 2.8e3), _REVIEW, "N", _CARBIDE, "aluminium 6082"
     ),
     "Al7075-T6": _linear(
-        (767.01e6, 168.8e6, 222e6), (27.7e3, 26.6e3, 0.7e3), _REVIEW, "N", _CARBIDE, "aluminium"
+        (767.01e6, 168.8e6, 222e6),
+        (27.7e3, 26.6e3, 0.7e3),
+        _REVIEW,
+        "N",
+        _CARBIDE,
+        "aluminium 7075",
     ),
     "Al7075-T6 (second source)": _linear(
-        (600.46e6, 180.96e6, 0.0), (17.9e3, 20.42e3, 0.0), _REVIEW, "N", _CARBIDE, "aluminium"
+        (600.46e6, 180.96e6, 0.0), (17.9e3, 20.42e3, 0.0), _REVIEW, "N", _CARBIDE, "aluminium 7075"
     ),
     "Al7075 HSS": _linear(
         (951.365e6, 262.597e6, 323.33e6),
@@ -37,7 +42,7 @@ ROWS: dict[str, MaterialRow] = {
         _REVIEW,
         "N",
         "milling with high-speed steel, dry",
-        "aluminium",
+        "aluminium 7075",
     ),
     "Al7075 (Altintas)": _linear(
         (1319.41e6, 788.83e6, 48.75e6),
@@ -45,7 +50,7 @@ ROWS: dict[str, MaterialRow] = {
         _REVIEW,
         "N",
         _CARBIDE,
-        "aluminium",
+        "aluminium 7075",
     ),
     "steel (80 mm face mill)": _linear(
         (1889.2e6, 806.1e6, 291.0e6),

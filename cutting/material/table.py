@@ -17,6 +17,11 @@ def found_rows(
     A grade is found under what other standards call it, too.
     """
     wanted = [word.lower() for word in words]
+    # a grade that came as several words: "GG 25" is no nodular iron (GGG) of 250 HB
+    together = "".join(wanted)
+    of_grade = {name: row for name, row in rows.items() if row.has_grade(together)}
+    if of_grade and len(wanted) > 1:
+        return of_grade
     return {
         name: row
         for name, row in rows.items()

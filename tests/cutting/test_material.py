@@ -7,6 +7,7 @@ import pytest
 
 from chatter.description.case import loads
 from cutting.force.exponential import ExponentialLaw
+from cutting.material.families import family_of
 from cutting.material.grades import EQUIVALENT_GRADES, bare
 from cutting.material.specific_cutting_force import RADIAL_RATIO
 from cutting.material.table import MATERIALS, found_rows
@@ -96,11 +97,54 @@ def test_two_editions_of_a_catalogue_differ_as_the_documents_have_it():
         ("1.7225", 8), ("1.6582", 9), ("C45E", 2), ("1.0503", 3), ("S355J2", 1), ("1.3343", 10),
         ("GGG-40", 17), ("EN-GJS-700-2", 18), ("EN AW-7075", 22), ("3.2315", 22), ("AlSi10Mg", 24),
         ("2.4668", 34), ("3.7165", 37),
+        # ISO 4957, EN 1561, EN 10084, EN 12163; UNS and JIS
+        ("1.2343", 10), ("1.2343", 11), ("H13", 11), ("SKD61", 10), ("D2", 10), ("1.2379", 11),
+        ("P20", 8), ("1.2311", 8), ("GG25", 16), ("EN-GJL-250", 16), ("0.6015", 15),
+        ("16MnCr5", 6), ("100Cr6", 6), ("SCM440", 7), ("SAE 4140", 9), ("G10450", 2),
+        ("UNS S30400", 14), ("SUS316L", 14), ("DIN 1.4301", 14), ("1.4571", 14), ("17-4PH", 13),
+        ("A97075", 22), ("AlZnMgCu1.5", 22), ("EN AW-5083", 21), ("A356", 24), ("CuZn39Pb3", 26),
+        ("Cu-ETP", 28), ("N06625", 33), ("1.4980", 32), ("3.7035", 36), ("GGG50", 17),
+        ("GGG50", 18),
     ],
 )  # fmt: skip
 def test_a_grade_is_found_by_any_standard(designation, group):
     assert any(f"group {group}" in row.examples for row in found_rows([designation]).values())
     assert f"(VDI {group})" in " ".join(found_rows([designation.lower()]))
+
+
+def test_tests_of_an_alloy_are_found_by_its_other_names():
+    """ "AlZnMgCu1.5" had the row of the catalogue, and none of the four of cutting tests."""
+    found = found_rows(["AlZnMgCu1.5"])
+    assert [name for name in found if name.startswith("Al7075")] == [
+        "Al7075-T6", "Al7075-T6 (second source)", "Al7075 HSS", "Al7075 (Altintas)"
+    ]  # fmt: skip
+
+
+def test_a_grade_in_two_words_is_found():
+    """Nodular iron was found: "gg" of GGG, "25" of 250 HB."""
+    assert list(found_rows(["GG", "25"])) == list(found_rows(["GG25"]))
+
+
+@pytest.mark.parametrize(
+    ("grade", "groups"),
+    [
+        ("1.2767", (6, 8, 10, 11)), ("1.0570", (1, 2, 3, 4, 5)), ("1.4539", (12, 13, 14)),
+        ("1.4841", (14, 31, 32)), ("1.6587", (6, 7, 8, 9)), ("0.6040", (15, 16)),
+        ("GGG80", (17, 18)), ("7050", (21, 22, 23, 24, 25)), ("EN AW-6063", (21, 22, 23, 24, 25)),
+        ("AISI 4330", (6, 7, 8, 9)), ("AISI 1144", (1, 2, 3, 4, 5)), ("S7", (6, 8, 10, 11)),
+        ("CuSn8", (26, 27, 28)), ("Hastelloy X", (33, 34, 35)), ("TiAl6Nb7", (36, 37)),
+        ("AISI 310", (12, 13, 14)), ("18CrNiMo7-6", (6, 7, 8, 9)), ("AZ91", ()), ("POM", ()),
+    ],
+)  # fmt: skip
+def test_the_family_of_a_grade_without_a_row(grade, groups):
+    """Numbers of EN 10027-2 and DIN 17007, names of AISI, SAE and EN."""
+    assert not any(row.has_grade(grade) for row in MATERIALS.values())
+    assert family_of(grade).groups == groups
+
+
+@pytest.mark.parametrize("grade", ["unobtainium", "", "12", "titan", "ours"])
+def test_what_is_no_designation_has_no_family(grade):
+    assert family_of(grade) is None
 
 
 def test_every_line_of_grades_leads_to_rows_and_no_designation_is_in_two():

@@ -29,6 +29,8 @@ _HELIX = QuantityField("angle", above=-0.5 * math.pi, below=0.5 * math.pi)
 _PITCH = QuantityField("angle", above=0.0)
 _ERROR = QuantityField("length", above=-0.1, below=0.1)
 #: the pitch angles must make a turn to within this, rad
+#: of a worn flank, m; the usual end of life is 0.3 mm (ISO 8688-2)
+_LONGEST_LAND = 10e-3
 _TURN_TOLERANCE = math.radians(0.01)
 
 
@@ -105,7 +107,9 @@ class Tool(Section):
     clearance_angle: quantity("angle", above=0.0, below=0.5 * math.pi) | None = Field(
         None, description="of the flank; ploughing needs it"
     )
-    flank_wear: Length = Field(0.0, description="length of the worn land")
+    flank_wear: quantity("length", at_least=0.0, at_most=_LONGEST_LAND) = Field(
+        0.0, description="length of the worn land"
+    )
     flute_length: PositiveLength | None = Field(
         None, description="of the cutting edges along the axis; no cut is deeper"
     )

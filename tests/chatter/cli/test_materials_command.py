@@ -21,6 +21,23 @@ def test_the_list_and_a_search():
     assert "no row has unobtainium" in none.stderr
 
 
+@pytest.mark.parametrize(
+    ("grade", "told"),
+    [
+        ("1.2767", 'it is a tool steel; the nearest rows are "low-alloy and cast steel (VDI 6)"'),
+        ("POM", "it is no metal, of which there is no row: `chatter coefficients` finds"),
+    ],
+)
+def test_a_grade_without_a_row_is_said_to_have_none_with_the_nearest(grade, told, tmp_path):
+    result = chatter_command("materials", grade)
+    assert result.exit_code == 2
+    assert f"no row has {grade}; by its name {told}" in result.stderr
+    case = tmp_path / "case.toml"
+    case.write_text(TOOL_OF_922_HERTZ, encoding="utf-8")
+    result = chatter_command("check", case, "--set", f"material={{name='{grade}'}}")
+    assert f'"{grade}" is not in the table of materials; by its name {told}' in result.stderr
+
+
 def test_json_of_a_search():
     found = json.loads(chatter_command("materials", "brass", "--json").stdout)
     (row,) = found.values()

@@ -87,7 +87,7 @@ def test_the_good_case_is_good():
         # ranges
         ('"2 mm"', '"-2 mm"', 'cut.axial_depth: "-2 mm" is out of range; it must be greater than 0'),
         ('"0.1 mm"', "-1e-4", "cut.feed_per_tooth: -0.0001 (a bare number is in m) is out of range; it must be greater than 0"),
-        ('"0.1 mm"', "0.1", "cut.feed_per_tooth: 0.1 (a bare number is in m) is out of range; it must be at most 0.02 m"),
+        ('"0.1 mm"', "0.1", "cut.feed_per_tooth: 0.1 (a bare number is in m) is out of range; it must be at most 20 mm"),
         ('"20 mm"', "20", "tool.diameter: 20 (a bare number is in m) is out of range; it must be at most 2 m"),
         ('"20 mm"', '"0 mm"', 'tool.diameter: "0 mm" is out of range; it must be greater than 0'),
         ("teeth = 4", "teeth = 0", "tool.teeth: 0 is out of range; numbers of teeth go from 1 to 200"),
