@@ -203,6 +203,26 @@ def test_further_power_and_angles_by_hand():
     assert f"{wide:.4g} mm, {math.pi * wide * turns(60.0, 6.0) / 1e3:.4g} m/min there" in PAGE
 
 
+def test_further_materials_and_edges_by_hand():
+    chip = 380.0 / (4.0 * 60e3 / (math.pi * 16.0))  # mm
+
+    def mean_of_arc(p):
+        """Integral of sin^p over a quarter of a revolution, rad."""
+        x = (np.arange(200_000) + 0.5) / 200_000 * 0.5 * math.pi
+        return float(np.mean(np.sin(x) ** p)) * 0.5 * math.pi
+
+    tool_steel = 4.0 / (2.0 * math.pi) * 2450.0 * chip**0.77 * 0.5 * mean_of_arc(0.77)
+    iron = 4.0 / (2.0 * math.pi) * 1350.0 * chip**0.72 * 0.5 * 2.0 * mean_of_arc(0.72)
+    for power in (tool_steel, iron):
+        assert f"at 1 m/s = {power:.1f} W" in PAGE
+        assert f"power {power:.1f} W mean" in PAGE
+    pitch = math.pi * 16.0 / (4.0 * math.tan(math.radians(40.0)))
+    assert f"= {pitch:.3f} mm. As deep" in PAGE
+    even = (1900.0 * 8.0 * 0.38 / 60.0 + 25.0) * pitch  # at 1 m/s one tooth of four is in the cut
+    assert f"power {even:.4g} W mean, {even:.4g} W peak" in PAGE
+    assert f"= {15.0 * 2.0 ** (1.0 / 0.25):.0f} min at 60 m/min" in PAGE
+
+
 def test_limits_by_hand():
     stiffness, damping = 12e3, 0.03  # N/mm
     ratio = np.linspace(0.9, 1.3, 400001)
