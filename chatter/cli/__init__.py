@@ -8,6 +8,7 @@ options_as_one    commands of many options take them as one dataclass
 imported_commands commands are imported when they are called, and help imports none
 quick_pictures    the library of pictures without its own documentation
 start_up          a word while the program is loaded
+garbage           the garbage collector while a command starts and ends
 progress          progress bars; what the first use takes
 results           what every command does with its result
 report            `--report` of every command
@@ -25,6 +26,7 @@ from typing import Any
 
 import typer
 
+from chatter.cli.garbage import end_without_collection, start_without_collection
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
 from chatter.cli.quick_pictures import leave_documentation_out
 from chatter.cli.start_up import START_UP
@@ -88,4 +90,8 @@ def main() -> None:
     """Run the command line."""
     leave_documentation_out()
     START_UP.begin()
-    program()
+    start_without_collection()
+    try:
+        program()
+    finally:
+        end_without_collection()

@@ -18,6 +18,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from chatter.cli.garbage import collect_from_here
 from chatter.cli.start_up import START_UP
 from chatter.report.console import MESSAGES, print_message
 
@@ -211,6 +212,7 @@ def running(description: str) -> Iterator[RunningWork]:
 
 @contextmanager
 def _shown(work: RunningWork) -> Iterator[RunningWork]:
+    collect_from_here()
     ended = threading.Event()
     shown = _on_terminal if MESSAGES.is_terminal else partial(_in_lines, START_UP.end())
     thread = threading.Thread(target=shown, args=(work, ended), daemon=True)
