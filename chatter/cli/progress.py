@@ -112,6 +112,11 @@ class RunningWork:
         return (0, None) if self._newest is None else self._newest[1:]
 
     @property
+    def begun(self) -> float:
+        """Time of the clock at which the part that is under way began, s."""
+        return self._begun
+
+    @property
     def elapsed(self) -> float:
         """Time since the work began, s."""
         return self._clock() - self._begun
@@ -233,8 +238,12 @@ def _on_terminal(work: RunningWork, ended: threading.Event) -> None:
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=MESSAGES, transient=True) as bar:
-        task = bar.add_task(work.description, total=None)
+        task, begun = bar.add_task(work.description, total=None), work.begun
         while not ended.wait(0.1):
+            if begun != work.begun:
+                # the bar's own time is that of the part that it names
+                begun = work.begun
+                bar.reset(task, total=None)
             done, total = work.counts
             bar.update(task, description=work.description, completed=done, total=total)
             sentence = work.announcement()

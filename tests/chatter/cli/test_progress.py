@@ -1,6 +1,7 @@
 """Progress: what is being done, how far, how long; nothing is silent for more than two seconds."""
 
 import ast
+import threading
 import time
 
 import pytest
@@ -205,6 +206,28 @@ def test_short_work_prints_nothing(capsys):
     with running("critical depth") as work:
         work(1, 2)
     assert capsys.readouterr().err == ""
+
+
+def test_the_bar_counts_the_time_of_each_part_anew(monkeypatch):
+    """A part that had just begun stood there with the 99 s of the one before it."""
+    seen = []
+
+    class Bar(progress.Progress):
+        def reset(self, task, **kwargs):
+            super().reset(task, **kwargs)
+            seen.append(self.tasks[0].elapsed)
+
+    monkeypatch.setattr(progress, "Progress", Bar)
+    ended, work = threading.Event(), RunningWork("limits")
+    thread = threading.Thread(target=progress._on_terminal, args=(work, ended))
+    thread.start()
+    time.sleep(0.4)
+    begin(work, "lowest limit")
+    time.sleep(0.4)
+    ended.set()
+    thread.join()
+    (elapsed,) = seen
+    assert elapsed < 0.1
 
 
 def test_an_error_ends_the_lines():
