@@ -59,11 +59,6 @@ class Effect(ABC):
         """Forms with more parameters, tried in its place once it is found and something is left."""
         return ()
 
-    @property
-    def mistaken_for(self) -> tuple[str, ...]:
-        """Names of effects that, beside a simpler member of the family, may stand for this one."""
-        return ()
-
     def applies(self, measurement: Measurement) -> bool:
         """Whether it may be missing in a measurement of one of its kinds."""
         return not measurement.case.get(self.declared)

@@ -10,8 +10,8 @@ from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.machine_file import MachineFile
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
-from chatter.explain.effects.machine import MOST_AXES, ControlDelay, ControlGain, JointStiffness
-from chatter.explain.fitting import Parameter
+from chatter.explain.effects.machine import MOST_AXES
+from chatter.explain.fitting import KnownByFactor, Parameter
 from chatter.explain.measurement import Measurement
 
 #: friction that is tried at two parts, over that of typical ones: what holds at rest is sharp
@@ -33,6 +33,7 @@ class RubbingPart(NamedTuple):
     sizes: dict[str, float]  # typical friction, by key of the law
     velocity: tuple[float, str]  # over which a Stribeck curve typically falls, and its unit
     hysteresis_slope: float  # friction is built up within some tenths of a mm or of a mrad
+    per: str  # unit of what the slope and the decay over speed are inverses of
 
     def unit(self, key: str) -> str:
         """Unit of a quantity of the friction law."""
@@ -41,11 +42,11 @@ class RubbingPart(NamedTuple):
 
 GUIDE = RubbingPart(
     "axis", "guide_", "", "N", "N*s/m", "N/m",
-    {"coulomb": 20.0, "viscous": 200.0}, (5e-3, "m/s"), 1e4,
+    {"coulomb": 20.0, "viscous": 200.0}, (5e-3, "m/s"), 1e4, "m",
 )  # fmt: skip
 MOTOR = RubbingPart(
     "motor", "motor_", "motor_", "N*m", "N*m*s/rad", "N*m/rad",
-    {"coulomb": 0.02, "viscous": 2e-3}, (3.0, "rad/s"), 1e4,
+    {"coulomb": 0.02, "viscous": 2e-3}, (3.0, "rad/s"), 1e4, "rad",
 )  # fmt: skip
 
 
@@ -63,14 +64,14 @@ class AxisFriction(Effect):
 
     @property
     def variants(self) -> tuple[Effect, ...]:
-        """Of one of the axes, at one of the parts."""
-        forms = (AxisFriction, MotorFriction)
+        """Of one of the axes, at one of the parts or at both."""
+        forms = (AxisFriction, MotorFriction, FrictionOfGuideAndMotor)
         return tuple(form(number) for number in range(MOST_AXES) for form in forms)
 
     @property
     def richer(self) -> tuple[Effect, ...]:
-        """At both parts of the same axis, or with a Stribeck curve."""
-        return (FrictionOfGuideAndMotor(self), StribeckFriction(self))
+        """With a Stribeck curve, or with what it is at low speed."""
+        return (StribeckFriction(self), LowSpeedFriction(self.number, self.parts))
 
     def applies(self, measurement: Measurement) -> bool:
         """Of a machine with so many axes without friction there."""
@@ -108,8 +109,14 @@ class AxisFriction(Effect):
         self, part: RubbingPart, axis: str, own: Values, values: Values
     ) -> dict[str, object]:
         """Law and the keys that the quantities do not give: friction with hysteresis."""
-        del axis, own, values
-        return {"law": "tanh-hysteresis", "hysteresis_slope": part.hysteresis_slope}
+        del own
+        slope = self._hysteresis_slope(part, axis, values)
+        return {"law": "tanh-hysteresis", "hysteresis_slope": slope}
+
+    def _hysteresis_slope(self, part: RubbingPart, axis: str, values: Values) -> float:
+        """Typical one, over displacement; FRFs at rest tell its product with the friction."""
+        del axis, values
+        return part.hysteresis_slope
 
     def reported(self, values: Values) -> Reported:
         """Friction, and its stiffness before it slides."""
@@ -117,7 +124,8 @@ class AxisFriction(Effect):
         for part, axis, own in self._laws(values):
             for key, value in own.items():
                 told[f"{key}_{part.named}{axis}"] = (value, part.unit(key))
-            stiffness = _stiffness(part, own["coulomb"])
+            slope = self._hysteresis_slope(part, axis, values)
+            stiffness = _stiffness(slope, own["coulomb"])
             told[f"presliding_stiffness_{part.named}{axis}"] = (stiffness, part.stiffness)
         return told
 
@@ -156,29 +164,46 @@ class MotorFriction(AxisFriction):
     parts = (MOTOR,)
 
 
-class FrictionOfGuideAndMotor(AxisFriction):
-    """Friction of guides and motor of an axis of which one was found to rub."""
+class LowSpeedFriction(AxisFriction):
+    """Friction with a hysteresis of its own, and viscous friction that is higher at low speed.
 
-    parts = (GUIDE, MOTOR)
+    At rest the one is stiffness and the other damping, which no friction in motion tells.
+    """
 
-    def __init__(self, found: AxisFriction) -> None:
-        super().__init__(found.number)
-        self._found = found
+    def __init__(self, number: int = 0, parts: tuple[RubbingPart, ...] = (GUIDE,)) -> None:
+        super().__init__(number)
+        self.parts = parts
 
     @property
     def richer(self) -> tuple[Effect, ...]:
         """None."""
         return ()
 
-    @property
-    def mistaken_for(self) -> tuple[str, ...]:
-        """Between two parts that hold lies what is compliant."""
-        return (JointStiffness.name, ControlGain.name, ControlDelay.name)
-
     def applies(self, measurement: Measurement) -> bool:
-        """Of an axis that has no friction declared at either part."""
-        case = measurement.case
-        return case.on_machine and self.axis(measurement) in self._axes(case.machine_file())
+        """Of an axis of which FRFs were measured, that has no friction declared at these parts."""
+        return "frf" in measurement.kinds and super().applies(measurement)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Those in motion, and of every part its hysteresis and what it is at low speed."""
+        axis = self.axis(measurement)
+        found = super().parameters(measurement)
+        for part in self.parts:
+            slope, decay = part.hysteresis_slope, 1.0 / part.velocity[0]
+            found += [
+                KnownByFactor(
+                    f"hysteresis_slope_{part.named}{axis}",
+                    slope, slope, 0.1 * slope, 10.0 * slope, unit=f"1/{part.per}",
+                ),
+                free(
+                    f"low_speed_viscous_{part.named}{axis}",
+                    0.0, 5.0 * part.sizes["viscous"], part.damping, lower=0.0,
+                ),
+                KnownByFactor(
+                    f"low_speed_decay_{part.named}{axis}",
+                    decay, decay, 0.02 * decay, 50.0 * decay, unit=f"s/{part.per}",
+                ),
+            ]  # fmt: skip
+        return found
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Every Coulomb friction of the one part with every one of the other."""
@@ -192,9 +217,44 @@ class FrictionOfGuideAndMotor(AxisFriction):
             for shares in itertools.product(_SHARES, repeat=len(self.parts))
         ]
 
-    def axis(self, measurement: Measurement) -> str:
-        """Axis of the friction that was found."""
-        return self._found.axis(measurement)
+    def _law_keys(
+        self, part: RubbingPart, axis: str, own: Values, values: Values
+    ) -> dict[str, object]:
+        """Friction with hysteresis, and its viscous friction at low speed."""
+        further = {
+            key: float(values[f"{key}_{part.named}{axis}"])
+            for key in ("low_speed_viscous", "low_speed_decay")
+        }
+        return super()._law_keys(part, axis, own, values) | further
+
+    def _hysteresis_slope(self, part: RubbingPart, axis: str, values: Values) -> float:
+        """Own one, over displacement."""
+        return float(values[f"hysteresis_slope_{part.named}{axis}"])
+
+    def reported(self, values: Values) -> Reported:
+        """Friction, its stiffness before it slides, and what it is at low speed."""
+        told = dict(super().reported(values))
+        for part, axis, _ in self._laws(values):
+            name = f"{part.named}{axis}"
+            told[f"low_speed_viscous_{name}"] = (
+                float(values[f"low_speed_viscous_{name}"]),
+                part.damping,
+            )
+            told[f"low_speed_decay_{name}"] = (
+                float(values[f"low_speed_decay_{name}"]), f"s/{part.per}",
+            )  # fmt: skip
+        return told
+
+
+class FrictionOfGuideAndMotor(LowSpeedFriction):
+    """Friction of guides and motor of an axis.
+
+    Between two parts that hold lies what is compliant: with one of them a stiffness, a gain or a
+    delay that is not as declared would stand for the other.
+    """
+
+    def __init__(self, number: int = 0) -> None:
+        super().__init__(number, (GUIDE, MOTOR))
 
 
 class StribeckFriction(AxisFriction):
@@ -254,7 +314,7 @@ class StribeckFriction(AxisFriction):
             "law": "lugre",
             "static": own["coulomb"] + float(values[f"onset_{part.named}{axis}"]),
             "stribeck_velocity": float(values[f"stribeck_velocity_{part.named}{axis}"]),
-            "bristle_stiffness": _stiffness(part, own["coulomb"]),
+            "bristle_stiffness": _stiffness(part.hysteresis_slope, own["coulomb"]),
         }
 
     def reported(self, values: Values) -> Reported:
@@ -269,6 +329,6 @@ class StribeckFriction(AxisFriction):
         return told
 
 
-def _stiffness(part: RubbingPart, coulomb: float) -> float:
+def _stiffness(slope: float, coulomb: float) -> float:
     """Stiffness of a friction at rest: of a branch that begins there, twice slope times force."""
-    return 2.0 * part.hysteresis_slope * coulomb
+    return 2.0 * slope * coulomb

@@ -231,7 +231,7 @@ class Stability(Kind):
         return trials
 
 
-def likely_stable(margin: Array, scatter: float) -> Array:
+def likely_stable(margin: Array, scatter: float | Array) -> Array:
     """Probability of a stable verdict at a margin, by the scatter of limits from test to test."""
     return _WRONG + (1.0 - 2.0 * _WRONG) * scipy.special.ndtr(margin / scatter)
 

@@ -17,7 +17,6 @@ from chatter.explain.selection.established import (
     reaches_nothing,
     stages_of_kept_effects,
 )
-from chatter.explain.selection.one_for_two import one_for_two
 from chatter.explain.selection.path import Path, best_path, filtered, gone_on, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
@@ -118,7 +117,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     path = best_path(path, first, split, progress)
     if len(path.stages) > 1:
         progress("trying again the effects added first", 0.85)
-        path = one_for_two(tried_again(path, split), split, progress)
+        path = tried_again(path, split)
     path, split = _gone_on_filtered(path, split, progress)
     path, split, final = _to_all_runs(path, split, progress)
     if path.stages and not is_at_noise(path.problem, final):

@@ -8,6 +8,7 @@ from chatter.compile.machine_response import machine_response
 from chatter.description.case import load
 from chatter.description.errors import InputError
 from chatter.explain.effects.effect_list import candidates
+from chatter.explain.effects.machine_friction import FrictionOfGuideAndMotor
 from chatter.explain.measurement import Measurement
 from tests.places import ROOT
 
@@ -196,6 +197,35 @@ def test_friction_at_rest_is_twice_the_force_times_its_slope(folder, missing, na
     change = np.abs(true - without).max()
     assert change > 0.02 * np.abs(true).max()
     assert np.abs(found - true).max() < 0.05 * change
+
+
+def test_friction_of_guide_and_motor_with_the_values_declared_is_that_of_the_machine(folder):
+    """At rest and moving, with what is higher at low speed; between the parts lies the screw."""
+    truth = load(folder / "case.toml")
+    case = without_friction(without_friction(truth, "rotation_y", folder), "translation_y", folder)
+    measurement = Measurement("frf", "effects", case.folder, case, ())
+    effect = next(
+        one
+        for one in candidates(measurement)
+        if isinstance(one, FrictionOfGuideAndMotor) and one.axis(measurement) == "Y"
+    )
+    declared = truth.machine_file().friction
+    values = {
+        f"{key}_{named}Y": getattr(declared[law], key)
+        for named, law in (("", "translation_y"), ("motor_", "rotation_y"))
+        for key in (
+            "coulomb", "viscous", "hysteresis_slope", "low_speed_viscous", "low_speed_decay",
+        )
+    }  # fmt: skip
+    assert set(values) == {one.name for one in effect.parameters(measurement)}
+    assert effect.reported(values)["presliding_stiffness_Y"][0] == pytest.approx(2.28e6, rel=1e-3)
+    for condition in ("at_rest", "moving"):
+        found, true, without = (
+            machine_response(one, condition, "y", "y", LINES)
+            for one in (case.patch(effect.patch(case, values)), truth, case)
+        )
+        assert found == pytest.approx(true, rel=1e-9, abs=1e-9 * np.abs(true).max())
+        assert np.abs(true - without).max() > 0.02 * np.abs(true).max()
 
 
 def test_a_slower_current_loop_is_another_machine(folder):

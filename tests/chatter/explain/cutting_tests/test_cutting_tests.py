@@ -15,6 +15,7 @@ from chatter.explain.checking import checked
 from chatter.explain.cutting_tests.fit_to_tests import SearchOverTests, fit_tests, fit_tests_widely
 from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import Refitted, in_words
+from chatter.explain.cutting_tests.reliability import spread_of_margin
 from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import ChippedEdge, GradualWear, SaturatingWear
 from chatter.explain.fitting import Parameter
@@ -209,6 +210,21 @@ def test_the_covariance_of_a_fit_is_that_of_the_curvature_of_its_cost():
         moved = dict(fit.by_name) | {one.name: fit.values[index] + step * one.size}
         there = problem.residuals(moved, problem.measurement.runs)
         assert slopes[:, index] == pytest.approx((there - residuals) / step, rel=2e-2, abs=2e-2)
+
+
+def test_margins_of_holdout_tests_scatter_as_parameters_drawn_from_the_fit_do():
+    problem = pointed(1.9, 1.1)
+    (run,) = problem.measurement.runs
+    fit = fit_tests(problem, [run], {})
+    margin = problem.kind.predict(fit.by_name, run)["margin"]
+    spread = spread_of_margin(problem, fit, run, margin)
+    drawn = np.random.default_rng(8).multivariate_normal(fit.values, fit.covariance, 4000)
+    names = [one.name for one in fit.parameters]
+    margins = [
+        problem.kind.predict(dict(zip(names, one, strict=True)), run)["margin"] for one in drawn
+    ]
+    assert spread == pytest.approx(np.std(margins, axis=0), rel=0.1, abs=1e-4)
+    assert spread.max() > 0.01
 
 
 def test_a_corrupt_power_costs_the_reading_and_not_the_verdict(tmp_path: Path):
