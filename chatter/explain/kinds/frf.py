@@ -198,8 +198,23 @@ def _scatter(run: Run, alike: Sequence[Run]) -> Array:
     else:
         own = run.signals["real"] + 1j * run.signals["imag"]
         spread = np.abs(np.convolve(own, [1, -2, 1], mode="same")) ** 2 / 12.0
-    relative = np.sqrt(spread) / np.abs(values.mean(axis=0))
-    # noise of a hammer test is a share of the response, near enough the same over some lines
-    padded = np.pad(relative, _SMOOTHED // 2, mode="reflect")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, _SMOOTHED)
-    return np.sqrt(np.mean(windows**2, axis=1)) * np.abs(values.mean(axis=0))
+    return np.sqrt(_smoothed(spread, np.abs(values.mean(axis=0)) ** 2))
+
+
+def _smoothed(spread: Array, square: Array) -> Array:
+    """Variance at every line, from its spread about it, with the square of the response.
+
+    Part of it is near enough the same over some lines, as that of a sensor, and part a share of the
+    response, as that of a hammer test: a straight line over the square, of parts not below nothing.
+    """
+    spreads, squares = (
+        np.lib.stride_tricks.sliding_window_view(
+            np.pad(one, _SMOOTHED // 2, mode="reflect"), _SMOOTHED
+        )
+        for one in (spread, square)
+    )
+    mean, level = spreads.mean(axis=1), squares.mean(axis=1)
+    away = squares - level[:, None]
+    slope = np.sum(away * spreads, axis=1) / np.maximum(np.sum(away**2, axis=1), 1e-300)
+    share = np.clip(slope, 0.0, mean / np.maximum(level, 1e-300))
+    return mean + share * (square - level)
