@@ -40,6 +40,8 @@ class Effect(ABC):
         Section of the case that the parameters are keys of.
     declared : str
         Path into the case: the effect may be missing where nothing stands there, or 0.
+    essential : tuple of str
+        Amounts each of which it must have: without one it is another effect, which nobody lists.
     """
 
     name: ClassVar[str]
@@ -48,6 +50,7 @@ class Effect(ABC):
     kinds: ClassVar[tuple[str, ...]]
     section: ClassVar[str] = ""
     declared: ClassVar[str] = ""
+    essential: ClassVar[tuple[str, ...]] = ()
 
     @property
     def variants(self) -> tuple[Effect, ...]:

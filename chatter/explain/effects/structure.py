@@ -153,6 +153,8 @@ class Contact(Effect):
 
     kinds = ("milling", "frf")
     section = "contact"
+    # surfaces that touch hold each other: what only damps in the cut is something else
+    essential = ("stiffness",)
 
     def __init__(self, full_engagement_share: float = 1.0) -> None:
         self.full_engagement_share = full_engagement_share

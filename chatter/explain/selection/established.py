@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import scipy
@@ -81,6 +81,8 @@ def is_established(stage: Stage, others: Problem, split: Split) -> bool:
         return False
     if share_removed(stage, best, others, split) < others.kind.least_share_in_part:
         return False
+    if any(_is_at({key: 0.0}, best.fit, best.effect) for key in best.effect.essential):
+        return False
     runs = others.measurement.runs
     trial = others.with_effect(best.effect)
     gains = [
@@ -111,12 +113,15 @@ def reaches_nothing(path: Path, final: Fit) -> Stage | None:
 
 
 def _reaches_nothing(final: Fit, effect: Effect, measurement: Measurement) -> bool:
-    """Wald's (1943) test of an effect's amounts against none."""
+    """Whether all of an effect's amounts together are as without it."""
     nothing = effect.nothing(measurement.of_kinds(effect.kinds))
+    return bool(nothing) and _is_at(nothing, final, effect)
+
+
+def _is_at(nothing: Mapping[str, float], final: Fit, effect: Effect) -> bool:
+    """Wald's (1943) test of amounts of an effect against those of no effect."""
     names = [one.name for one in final.parameters]
     indices = [names.index(f"{effect.name}.{key}") for key in nothing]
-    if not indices:
-        return False
     away = final.values[indices] - np.array(list(nothing.values()))
     covariance = final.covariance[np.ix_(indices, indices)]
     distance = float(away @ np.linalg.pinv(covariance, hermitian=True) @ away)

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import chatter
+from benchmarks.blind_sets.frf import write_set
 from chatter.description.case import loads
 from chatter.explain.explanation import explain
 from chatter.explain.measurement import Measurement, Run
@@ -94,3 +96,11 @@ def test_values_far_from_declared_do_not_explain():
     (one,) = summary["out_of_tolerance"]
     assert one["path"] == "axis.coulomb_friction"
     assert one["refitted"] == pytest.approx(12.0, rel=0.05)
+
+
+def test_what_only_damps_in_the_cut_is_no_contact(tmp_path):
+    """A loss that is the same at all frequencies: a damper without a spring came near it."""
+    write_set(tmp_path, 3006, np.random.default_rng([2029, 6]), "friction_like_damping")
+    summary = chatter.explain(tmp_path / "set-3006").summary()
+    assert summary["verdict"] == "unexplained"
+    assert summary["effects"] == []
