@@ -65,13 +65,16 @@ class AxisFriction(Effect):
     @property
     def variants(self) -> tuple[Effect, ...]:
         """Of one of the axes, at one of the parts or at both."""
-        forms = (AxisFriction, MotorFriction, FrictionOfGuideAndMotor)
-        return tuple(form(number) for number in range(MOST_AXES) for form in forms)
+        found: list[Effect] = []
+        for number in range(MOST_AXES):
+            guide = AxisFriction(number)
+            found += [guide, MotorFriction(number), FrictionOfGuideAndMotor(guide)]
+        return tuple(found)
 
     @property
     def richer(self) -> tuple[Effect, ...]:
-        """With a Stribeck curve, or with what it is at low speed."""
-        return (StribeckFriction(self), LowSpeedFriction(self.number, self.parts))
+        """At both parts of the axis, with a Stribeck curve, or with what it is at low speed."""
+        return (FrictionOfGuideAndMotor(self), StribeckFriction(self), LowSpeedFriction(self))
 
     def applies(self, measurement: Measurement) -> bool:
         """Of a machine with so many axes without friction there."""
@@ -170,9 +173,10 @@ class LowSpeedFriction(AxisFriction):
     At rest the one is stiffness and the other damping, which no friction in motion tells.
     """
 
-    def __init__(self, number: int = 0, parts: tuple[RubbingPart, ...] = (GUIDE,)) -> None:
-        super().__init__(number)
-        self.parts = parts
+    def __init__(self, found: AxisFriction) -> None:
+        super().__init__(found.number)
+        self._found = found
+        self.parts = found.parts
 
     @property
     def richer(self) -> tuple[Effect, ...]:
@@ -181,7 +185,13 @@ class LowSpeedFriction(AxisFriction):
 
     def applies(self, measurement: Measurement) -> bool:
         """Of an axis of which FRFs were measured, that has no friction declared at these parts."""
-        return "frf" in measurement.kinds and super().applies(measurement)
+        if "frf" not in measurement.kinds or not self._found.applies(measurement):
+            return False
+        return self.axis(measurement) in self._axes(measurement.case.machine_file())
+
+    def axis(self, measurement: Measurement) -> str:
+        """Axis of the simpler friction."""
+        return self._found.axis(measurement)
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Those in motion, and of every part its hysteresis and what it is at low speed."""
@@ -253,8 +263,9 @@ class FrictionOfGuideAndMotor(LowSpeedFriction):
     delay that is not as declared would stand for the other.
     """
 
-    def __init__(self, number: int = 0) -> None:
-        super().__init__(number, (GUIDE, MOTOR))
+    def __init__(self, found: AxisFriction) -> None:
+        super().__init__(found)
+        self.parts = (GUIDE, MOTOR)
 
 
 class StribeckFriction(AxisFriction):

@@ -28,8 +28,9 @@ from chatter.explain.selection.candidates import (
     stage_of,
     stage_with,
 )
+from chatter.explain.selection.cheaper_runs import screened_candidates
 from chatter.explain.selection.evidence import log_evidence
-from chatter.explain.selection.linearised_step import linearised
+from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split, split_runs
@@ -207,7 +208,9 @@ def _one_richer(path: Path, split: Split, progress: Progress) -> Path:
         without = path.problem.without_effect(effect)
         before = without.fit(split.fitted, path.now.by_name)
         own = fitted(without, effect, split, path.now.by_name)
-        steps = [(one, linearised(without, one, before, split.fitted)) for one in others]
+        steps = _steps(without, before, split.fitted, others)
+        if not steps:
+            continue
         one, step = min(steps, key=lambda entry: entry[1].cost)
         member = fitted(without, one, split, step.values)
         if member.evidence - own.evidence < LEAST_EVIDENCE or member.holdout > own.holdout:
@@ -217,3 +220,18 @@ def _one_richer(path: Path, split: Split, progress: Progress) -> Path:
         now = problem.fit(split.fitted, member.fit.by_name)
         path = Path([*path.stages[:index], found, *path.stages[index + 1 :]], problem, now)
     return path
+
+
+def _steps(
+    problem: Problem, now: Fit, runs: Sequence[Run], effects: Sequence[Effect]
+) -> list[tuple[Effect, LinearisedStep]]:
+    """Effects that the cheaper runs leave, each with its linearised step."""
+    return [
+        (
+            effect,
+            linearised(problem, effect, now, runs)
+            if begins is None
+            else linearised_from(problem, effect, now, runs, begins),
+        )
+        for effect, begins in screened_candidates(problem, now, runs, effects)
+    ]
