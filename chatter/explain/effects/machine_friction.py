@@ -245,14 +245,10 @@ class LowSpeedFriction(AxisFriction):
         """Friction, its stiffness before it slides, and what it is at low speed."""
         told = dict(super().reported(values))
         for part, axis, _ in self._laws(values):
-            name = f"{part.named}{axis}"
-            told[f"low_speed_viscous_{name}"] = (
-                float(values[f"low_speed_viscous_{name}"]),
-                part.damping,
-            )
-            told[f"low_speed_decay_{name}"] = (
-                float(values[f"low_speed_decay_{name}"]), f"s/{part.per}",
-            )  # fmt: skip
+            units = {"low_speed_viscous": part.damping, "low_speed_decay": f"s/{part.per}"}
+            for key, unit in units.items():
+                name = f"{key}_{part.named}{axis}"
+                told[name] = (float(values[name]), unit)
         return told
 
 
