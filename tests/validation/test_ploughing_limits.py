@@ -108,5 +108,5 @@ def test_check_says_which_share_of_the_dashpot_acts():
 
 
 def test_a_land_that_no_flank_has_is_refused():
-    with pytest.raises(InputError, match=r"tool\.flank_wear: 50 mm is out of range"):
+    with pytest.raises(InputError, match=r'tool\.flank_wear: "50 mm" is out of range'):
         check(worn_case("0.1 mm").patch({"tool.flank_wear": "50 mm"}))
