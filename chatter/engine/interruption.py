@@ -1,33 +1,87 @@
-"""Ctrl-C and compiled code: an exception while results are handed to Python can end the process."""
+"""Ctrl-C and compiled code: an exception while results are handed to Python can end the process.
+
+numba calls short functions of Python while it hands the results of compiled code over, and while
+it loads code. Python runs the handler of Ctrl-C in the first of them; numba does not look whether
+it raised, which is a segmentation fault.
+"""
 
 import signal
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+#: modules whose functions are called from within compiled code
+_CALLED_WITHIN = ("numba.core.serialize", "llvmlite.binding.executionengine")
+#: in the name of the module of the constructor of a named tuple
+_NAMED_TUPLE = "namedtuple_"
+#: s: until Ctrl-C is tried again
+_LATER = 0.002
+
+
+def defer_interruptions() -> None:
+    """Hold Ctrl-C back, from here on, while compiled code hands results over.
+
+    Only the main thread receives Ctrl-C; what ignores it, or has no handler of Python, stays.
+    """
+    before = _replaceable()
+    if before is not None:
+        signal.signal(signal.SIGINT, _Deferring(before))
+    # a notebook sets its own handler before every cell
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if shell is not None and before is not None:
+        shell.events.register("pre_run_cell", _before_cell)
 
 
 @contextmanager
 def interruptions_deferred() -> Iterator[None]:
-    """Hold Ctrl-C back until compiled code has returned; a second one is passed on at once.
-
-    Tuples of tuples are built by Python code while they are handed over, and an exception there is
-    a segmentation fault. Only the main thread receives Ctrl-C.
-    """
-    before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
+    """Hold Ctrl-C back while compiled code hands results over, whoever set its handler since."""
+    before = _replaceable()
+    if before is None:
         yield
         return
-    held: list[tuple] = []
-
-    def hold(*arguments) -> None:
-        held.append(arguments)
-        if len(held) > 1:
-            before(*arguments)
-
-    signal.signal(signal.SIGINT, hold)
+    signal.signal(signal.SIGINT, _Deferring(before))
     try:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-        if len(held) == 1:
-            before(*held[0])
+
+
+def _before_cell(*_: object) -> None:
+    before = _replaceable()
+    if before is not None:
+        signal.signal(signal.SIGINT, _Deferring(before))
+
+
+def _replaceable() -> Callable[..., Any] | None:
+    """Handler of Ctrl-C that does not look what it interrupts."""
+    before = signal.getsignal(signal.SIGINT)
+    main = threading.current_thread() is threading.main_thread()
+    return before if main and callable(before) and not isinstance(before, _Deferring) else None
+
+
+class _Deferring:
+    """Handler that passes Ctrl-C on to another once Python, not compiled code, is interrupted."""
+
+    def __init__(self, handler: Callable[..., Any]) -> None:
+        self._handler = handler
+
+    def __call__(self, number: int, frame: FrameType | None) -> Any:
+        """Handle the signal in a frame."""
+        if not _within_compiled_code(frame):
+            return self._handler(number, frame)
+        again = threading.Timer(_LATER, signal.raise_signal, [number])
+        again.daemon = True
+        again.start()
+        return None
+
+
+def _within_compiled_code(frame: FrameType | None) -> bool:
+    while frame is not None:
+        module = str(frame.f_globals.get("__name__", ""))
+        if module in _CALLED_WITHIN or module.startswith(_NAMED_TUPLE):
+            return True
+        frame = frame.f_back
+    return False

@@ -16,6 +16,7 @@ from pathlib import Path
 import numba
 
 from chatter.description.registry import extension_sources
+from chatter.engine.interruption import defer_interruptions
 from chatter.engine.loaded_kernels import load_without_compiler
 from cutting.compiled import UNCOUNTED
 
@@ -81,6 +82,7 @@ def _set_cache_folder() -> Path:
 
 
 CACHE_FOLDER = _set_cache_folder()
+defer_interruptions()
 
 #: functions called from drivers
 KERNEL = {"cache": True, "error_model": UNCOUNTED["error_model"]}

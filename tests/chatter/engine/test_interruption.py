@@ -1,0 +1,105 @@
+"""Ctrl-C while compiled code runs is an exception of Python, never the end of the process."""
+
+import signal
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from chatter.engine import interruption
+
+#: the first call unpickles the types of its results, later ones look them up
+PROGRAM = """
+import signal, sys, threading, time
+from typing import NamedTuple
+import numpy as np
+from numba import njit, types
+
+if sys.argv[1] == "deferred":
+    import chatter.engine.presets
+
+class Pair(NamedTuple):
+    first: np.ndarray
+    second: np.ndarray
+
+@njit(nogil=True)
+def work(count):
+    total = 0.0
+    for i in range(count):
+        total += np.sin(total + i)
+    return Pair(np.full(2, total), np.ones(3)), Pair(np.ones(1), np.ones(2))
+
+work.compile((types.int64,))
+caught = 0
+for _ in range(10):
+    threading.Timer(0.02, signal.raise_signal, [signal.SIGINT]).start()
+    try:
+        work(5_000_000)
+        time.sleep(5.0)
+    except KeyboardInterrupt:
+        caught += 1
+print(caught)
+"""
+
+
+def of_program(how):
+    line = [sys.executable, "-c", PROGRAM, how]
+    return subprocess.run(line, capture_output=True, text=True, timeout=120.0, check=False)
+
+
+def test_ctrl_c_in_compiled_code_is_a_keyboard_interrupt():
+    ended = of_program("deferred")
+    assert (ended.returncode, ended.stdout.strip()) == (0, "10"), ended.stderr
+
+
+def test_without_it_ctrl_c_ends_the_process():
+    # the fault of numba that all this is for: once it is mended, this module can go
+    assert of_program("alone").returncode in (-signal.SIGSEGV, -signal.SIGABRT, 1)
+
+
+@pytest.fixture
+def handler(monkeypatch):
+    before = signal.getsignal(signal.SIGINT)
+    yield lambda: signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, before)
+
+
+def test_the_handler_that_was_there_is_called(handler):
+    called = []
+    signal.signal(signal.SIGINT, lambda *_: called.append("mine"))
+    interruption.defer_interruptions()
+    signal.raise_signal(signal.SIGINT)
+    assert called == ["mine"]
+
+
+def test_a_process_that_ignores_ctrl_c_goes_on_ignoring_it(handler):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    interruption.defer_interruptions()
+    with interruption.interruptions_deferred():
+        assert handler() is signal.SIG_IGN
+
+
+def test_a_handler_set_since_is_back_after_the_call(handler):
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with interruption.interruptions_deferred():
+        assert handler() is not signal.default_int_handler
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    assert handler() is signal.default_int_handler
+
+
+def test_a_notebook_defers_in_every_cell(handler, monkeypatch):
+    hooks = []
+    shell = SimpleNamespace(
+        events=SimpleNamespace(register=lambda event, hook: hooks.append((event, hook)))
+    )
+    monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: shell))
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    interruption.defer_interruptions()
+    (event, hook), deferring = hooks[0], handler()
+    assert event == "pre_run_cell"
+    # as the kernel of a notebook does before each cell
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    hook(None)
+    assert type(handler()) is type(deferring)
