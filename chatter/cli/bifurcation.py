@@ -64,10 +64,10 @@ def bifurcation(
 
 def _print_onsets(diagram: BifurcationDiagram) -> None:
     """Print from where to where along the range cuts have the same verdict."""
-    points, unit = diagram.summary()["points"], usual_unit(Case, diagram.path)
+    points = diagram.summary()["points"]
 
     def value_of(point: dict) -> str:
-        return f"{point['value'] * unit.factor:.5g} {unit.name}".rstrip()
+        return _in_unit(diagram, point["value"])
 
     for verdict, group in itertools.groupby(points, lambda point: point["verdict"]):
         alike = list(group)
@@ -84,3 +84,27 @@ def _print_onsets(diagram: BifurcationDiagram) -> None:
             f"in {share} cuts, the first at {first}, the tool left the range of the model: they "
             "have no Poincaré section"
         )
+    _print_linear(diagram)
+
+
+def _print_linear(diagram: BifurcationDiagram) -> None:
+    """Print the limits of the linear analysis and the cuts of which it says otherwise."""
+    linear = diagram.linear
+    if linear.reason:
+        print_line(f"no limit of the linear analysis: {linear.reason}")
+        return
+    limits = [_in_unit(diagram, limit) for limit in linear.limits]
+    where = f"{'chatter' if linear.unstable else 'stable'} from end to end"
+    if limits:
+        where = f"limit{'s' * (len(limits) > 1)} at {', '.join(limits)}"
+    print_line(f"linear analysis ({linear.method}): {where}")
+    for one in linear.disagreements:
+        first, last = _in_unit(diagram, one.first), _in_unit(diagram, one.last)
+        span = first if one.cuts == 1 else f"{first} to {last}"
+        print_line(f"{span}: {one.simulated} in the simulation, {one.reason}")
+
+
+def _in_unit(diagram: BifurcationDiagram, value: float) -> str:
+    """Value of the path in the unit that people read it in."""
+    unit = usual_unit(Case, diagram.path)
+    return f"{value * unit.factor:.5g} {unit.name}".rstrip()

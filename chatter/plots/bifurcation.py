@@ -8,7 +8,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.usual_units import usual_unit
-from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
+from chatter.plots.style import BLUE, GREY, RED, UNSTABLE_FILL, finish, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,6 +45,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
                 color=_COLOURS.get(point.verdict, GREY),
             )
         _mark_incomplete(panel, diagram, factor)
+        _mark_linear(panel, diagram, factor)
         panel.set_ylabel(f"{'xyz'[axis]} at the Poincaré section [µm]")
         finish(panel)
     drawn = {point.verdict for point in diagram.points if point.is_complete}
@@ -53,7 +54,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     figure.legend(
         *panels[0].get_legend_handles_labels(),
         loc="outside upper right",
-        ncols=3,
+        ncols=2,
         frameon=False,
         fontsize=9,
     )
@@ -61,11 +62,23 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     values = [point.value * factor for point in diagram.points]
     # the sections at both ends stand beside the frame, not half behind it
     beside = _BESIDE * (max(values) - min(values)) or _BESIDE * abs(values[0]) or 1.0
-    panels[-1].set_xlim(min(values) - beside, max(values) + beside)
+    ends = min(values) - beside, max(values) + beside
+    panels[-1].set_xlim(*ends)
     panels[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
     if diagram.case.title:
         panels[0].set_title(diagram.case.title, loc="left")
     return figure
+
+
+def _mark_linear(panel: Axes, diagram: BifurcationDiagram, factor: float) -> None:
+    """Shade the values at which the linear analysis says chatter, and draw its limits."""
+    linear, name = diagram.linear, f"by the linear analysis ({diagram.linear.method})"
+    for number, (start, end) in enumerate(linear.unstable):
+        label = "_" if number else f"chatter {name}"
+        panel.axvspan(start * factor, end * factor, color=UNSTABLE_FILL, zorder=0, label=label)
+    for number, limit in enumerate(linear.limits):
+        label = "_" if number else "its limit"
+        panel.axvline(limit * factor, color="black", linestyle="--", linewidth=1.0, label=label)
 
 
 def _mark_incomplete(panel: Axes, diagram: BifurcationDiagram, factor: float) -> None:

@@ -36,7 +36,8 @@ METHODS = {
     "bifurcation": Method(
         "Where does the motion change as one value is varied?",
         "A cut is simulated at each value; its Poincaré section, sampled once a period, is a point "
-        "where the cut is stable (Nayfeh and Mook, Nonlinear Oscillations, 1979).",
+        "where the cut is stable (Nayfeh and Mook, Nonlinear Oscillations, 1979). The largest "
+        "multiplier of the linear equations is computed at the same values.",
     ),
     "whatif": Method(
         "What changes if these values change?",

@@ -21,6 +21,13 @@ from chatter.simulation.simulate import run_setup
 from chatter.simulation.structure_in_time import modes_of
 from chatter.simulation.verdict import with_verdict
 from chatter.studies.executor import ThreadExecutor
+from chatter.studies.linear_limits import (
+    NO_LIMITS,
+    LinearLimits,
+    Simulated,
+    linear_limits,
+    linear_spectral_radius,
+)
 from chatter.studies.model import fingerprint
 from chatter.studies.result_cache import Execution, ResultCache
 from dynamics.modal.modes import Mode
@@ -44,6 +51,7 @@ class BifurcationPoint:
     verdict: str  # "stable" or "chatter"
     bifurcation: str
     chatter_frequency: float  # Hz; nan where there is none
+    spectral_radius: float = math.nan  # by the linear analysis; nan where it does not take the cut
 
     @property
     def is_complete(self) -> bool:
@@ -61,6 +69,8 @@ class BifurcationDiagram(SavedResult):
     path : str
         Dotted path of the value that varies.
     points : tuple of BifurcationPoint
+    linear : LinearLimits
+        Limits of the linear analysis over the same values, and where the cuts say otherwise.
     """
 
     drawn_by: ClassVar[str] = "plots.bifurcation.plot_bifurcation"
@@ -69,6 +79,7 @@ class BifurcationDiagram(SavedResult):
     case: Case
     path: str
     points: tuple[BifurcationPoint, ...]
+    linear: LinearLimits = NO_LIMITS
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
@@ -82,9 +93,11 @@ class BifurcationDiagram(SavedResult):
                     "bifurcation": point.bifurcation,
                     "chatter_frequency_Hz": finite_or_none(point.chatter_frequency),
                     "spread_um": finite_or_none(_spread(point) * 1e6),
+                    "spectral_radius": finite_or_none(point.spectral_radius),
                 }
                 for point in self.points
             ],
+            "linear_analysis": self.linear.summary(),
         }
 
     def tables(self) -> dict[str, str]:
@@ -142,12 +155,14 @@ def bifurcation(
         BifurcationPoint(**{**one, "poincare_section": _section(one["poincare_section"])})
         for one in records
     ]
-    return BifurcationDiagram(case, path, tuple(points))
+    cuts = [Simulated(point.value, point.verdict, point.spectral_radius) for point in points]
+    return BifurcationDiagram(case, path, tuple(points), linear_limits(case, path, cuts))
 
 
 def _record(path: str, modes: tuple[Mode, ...] | None, case: Case) -> dict[str, Any]:
     """Cut of a case as the result cache keeps it."""
     point = asdict(_point(case, path, modes))
+    point["spectral_radius"] = linear_spectral_radius(case)
     return {**point, "poincare_section": point["poincare_section"].tolist()}
 
 

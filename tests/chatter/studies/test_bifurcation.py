@@ -9,6 +9,7 @@ import pytest
 
 import chatter
 from chatter import Case, InputError
+from chatter.studies.linear_limits import Simulated, linear_limits, linear_spectral_radius
 from tests.cases import tool_of_922_hertz
 from tests.command_line import chatter_command
 
@@ -106,6 +107,73 @@ def test_wrong_values(path, values, words):
         chatter.bifurcation(cut_of(20000, "3 mm"), path, values)
 
 
+def cuts_at(case, path, values, verdicts):
+    """Cuts with verdicts as if simulated, and their spectral radii by the linear analysis."""
+    radii = [linear_spectral_radius(case.patch({path: value})) for value in values]
+    return [Simulated(*cut) for cut in zip(values, verdicts, radii, strict=True)]
+
+
+@pytest.mark.parametrize(("rpm", "limit"), [(20000, 3.774048e-3), (10000, 1.657701e-3)])
+def test_limit_of_the_linear_analysis_over_depth(rpm, limit):
+    # validation 2.3: flip and Hopf
+    depths = [limit - 0.4e-3, limit - 0.1e-3, limit + 0.3e-3]
+    case = cut_of(rpm, "1 mm")
+    found = linear_limits(
+        case,
+        "cut.axial_depth",
+        cuts_at(case, "cut.axial_depth", depths, ["stable", "stable", "chatter"]),
+    )
+    assert found.limits == pytest.approx([limit], rel=2e-4)
+    assert found.unstable == (pytest.approx((found.limits[0], depths[-1])),)
+    assert found.disagreements == ()
+    assert found.reason == ""
+
+
+def test_limit_of_the_linear_analysis_over_speed():
+    """At the depth of the limit of 10000 rpm (validation 2.3) stability changes at that speed."""
+    case = cut_of(10000, "1.657701 mm")
+    speeds = [RPM * rpm for rpm in (9800, 10060)]
+    cuts = cuts_at(case, "cut.spindle_speed", speeds, ["not judged"] * 2)
+    (limit,) = linear_limits(case, "cut.spindle_speed", cuts).limits
+    assert limit / RPM == pytest.approx(10000.0, rel=1e-4)
+
+
+def test_where_simulation_and_linear_analysis_say_the_opposite():
+    case, path = cut_of(10000, "1 mm"), "cut.axial_depth"
+    depths = [1.2e-3, 1.4e-3, 1.5e-3, 1.8e-3, 1.9e-3]
+    verdicts = ["stable", "chatter", "chatter", "stable", "chatter"]
+    below, above = linear_limits(case, path, cuts_at(case, path, depths, verdicts)).disagreements
+    assert (below.first, below.last, below.cuts) == (1.4e-3, 1.5e-3, 2)
+    assert below.simulated == "chatter"
+    assert "says stable" in below.reason
+    assert "large vibration goes on where small vibration dies out" in below.reason
+    assert (above.first, above.last, above.simulated) == (1.8e-3, 1.8e-3, "stable")
+    assert "says chatter" in above.reason
+    assert "simulation.revolutions" in above.reason
+    assert "large vibration" not in above.reason
+
+
+def test_edge_forces_are_the_reason_where_they_may_be():
+    """A slot begins and ends at a chip of zero, where motion and radial force are along y."""
+    slot = {"mode": "slot", "radial_depth": "16 mm", "axial_depth": "1 mm"}
+    case = tool_of_922_hertz(((0, 1, 0),), cut=slot, material={"Kre": "6 N/mm"})
+    path = "cut.axial_depth"
+    cuts = [Simulated(1e-4, "chatter", 0.99), Simulated(9e-3, "stable", 1.01)]
+    below, above = linear_limits(case, path, cuts).disagreements
+    assert "edge forces that set in at a chip of zero may lower the limit" in below.reason
+    assert "may raise the limit by some percent" in above.reason
+
+
+def test_no_linear_analysis_where_the_engagement_changes():
+    path = [["0 mm", "0 mm"], ["9 mm", "0 mm"]]
+    case = cut_of(20000, "3 mm").patch({"simulation.path": path, "simulation.chip": "dexel"})
+    assert math.isnan(linear_spectral_radius(case))
+    found = linear_limits(case, "cut.axial_depth", [Simulated(1e-3, "stable", math.nan)])
+    assert found.limits == found.unstable == found.disagreements == ()
+    assert "engagement changes along the run" in found.reason
+    assert "case.toml" not in found.reason
+
+
 def test_rigid_tool_is_refused():
     document = cut_of(20000, "3 mm").model_dump(by_alias=True, exclude_none=True)
     del document["structure"]
@@ -152,6 +220,11 @@ def test_files_of_the_command(case_file, tmp_path):
     assert [point["verdict"] for point in points][::2] == ["stable", "chatter"]
     assert points[0]["chatter_frequency_Hz"] is None
     assert points[2]["chatter_frequency_Hz"] == pytest.approx(1000.0, rel=1e-3)
+    assert [point["spectral_radius"] < 1.0 for point in points] == [True, False, False]
+    # validation 2.3
+    linear = summary["linear_analysis"]
+    assert linear["limits"] == pytest.approx([3.774048e-3], rel=2e-4)
+    assert linear["not_taken_because"] is None
     with (out / "bifurcation.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["cut.axial_depth [SI]", "x [um]", "y [um]", "z [um]", "verdict"]
@@ -167,6 +240,29 @@ def test_onset_is_told(case_file):
     assert result.exit_code == 0, result.output
     assert "3.4 mm: stable" in result.stdout
     assert "4.2 mm: chatter at 1000.0 Hz (flip)" in result.stdout
+    # validation 2.3: 3.774048 mm
+    assert "linear analysis (collocation): limit at 3.774 mm" in result.stdout
+    assert "says" not in result.stdout
+
+
+def test_a_range_without_a_limit_is_said_to_have_none(case_file):
+    told = run(case_file, "cut.axial_depth=1 mm..1.2 mm", "--count", "2").stdout
+    assert "linear analysis (collocation): stable from end to end" in told
+
+
+def test_the_picture_has_the_limit_of_the_linear_analysis():
+    diagram = chatter.bifurcation(cut_of(20000, "3 mm"), "cut.axial_depth", [3.6e-3, 4e-3])
+    for panel in diagram.plot().axes:
+        (line,) = [one for one in panel.lines if one.get_linestyle() == "--"]
+        assert list(line.get_xdata()) == pytest.approx([3.774048] * 2, rel=2e-4)
+        (shade,) = panel.patches
+        assert shade.get_extents().transformed(panel.transData.inverted()).x0 == pytest.approx(
+            3.774048, rel=2e-4
+        )
+    (legend,) = diagram.plot().legends
+    words = {text.get_text() for text in legend.get_texts()}
+    shade = "chatter by the linear analysis (collocation)"
+    assert words == {shade, "its limit", "stable", "chatter"}
 
 
 @pytest.mark.parametrize(
