@@ -1,9 +1,14 @@
-"""Speeds of a cut without a unit: 14000 may be in rpm or in rad/s, so that neither is taken."""
+"""Values without a unit that are hardly in that of SI.
+
+A spindle speed of 14000 may be in rpm or in rad/s, so that neither is taken; a power of 1.2 is no
+1.2 W.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
@@ -11,12 +16,30 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.path import Step, field_at, join_path, parse_path
 
-#: units that a bare number could have, the last that of SI: of a spindle speed, wherever it is, and
-#: of other speeds of a cut
-_OF_SPINDLE = ("rpm", "rad/s")
-_OF_CUT: dict[tuple[Step, ...], tuple[str, str]] = {
-    ("cut", "cutting_speed"): ("m/min", "m/s"),
-    ("cut", "feed_rate"): ("mm/min", "m/s"),
+
+class _Units(NamedTuple):
+    """Units that a bare number could have."""
+
+    usual: str
+    si: str
+    below: float = math.inf  # a bare number below it is in the usual unit, one above it in SI
+
+    def wanted(self, number: str) -> str:
+        """What to write in the place of a number."""
+        either = f', or "{number} {self.si}"' if math.isinf(self.below) else ""
+        return f'write "{number} {self.usual}"{either}'
+
+
+#: W: no spindle that mills has less
+LEAST_POWER = 20.0
+#: of a spindle speed, wherever it is, and of other keys
+_OF_SPINDLE = _Units("rpm", "rad/s")
+_OF_KEYS: dict[tuple[Step, ...], _Units] = {
+    ("cut", "cutting_speed"): _Units("m/min", "m/s"),
+    ("cut", "feed_rate"): _Units("mm/min", "m/s"),
+    ("optimum", "max_power"): _Units("kW", "W", LEAST_POWER),
+    # ten minutes: a life of so many seconds is none
+    ("optimum", "min_tool_life"): _Units("min", "s", 600.0),
 }
 
 
@@ -24,8 +47,8 @@ def refuse_bare_speeds(kind: type[BaseModel], data: Any, name: str) -> None:
     """Raise InputError where nested tables of a file give a speed of a cut as a bare number."""
     problems = [
         f"{name}: {join_path(steps)}: {formatted(value)} has no unit; "
-        f'write "{formatted(value)} {usual}", or "{formatted(value)} {si}"'
-        for steps, value, (usual, si) in _bare_speeds(kind, data)
+        f"{units.wanted(formatted(value))}"
+        for steps, value, units in _bare_speeds(kind, data)
     ]
     if problems:
         raise InputError(problems)
@@ -33,11 +56,11 @@ def refuse_bare_speeds(kind: type[BaseModel], data: Any, name: str) -> None:
 
 def give_speeds_their_unit(kind: type[BaseModel], document: Any) -> None:
     """Write bare speeds of a cut in a document, which came from Python, with their unit."""
-    for steps, value, (_, si) in list(_bare_speeds(kind, document)):
+    for steps, value, units in list(_bare_speeds(kind, document)):
         table = document
         for step in steps[:-1]:
             table = table[step]
-        table[steps[-1]] = f"{float(value)!r} {si}"
+        table[steps[-1]] = f"{float(value)!r} {units.si}"
 
 
 def refuse_bare_speed_assignments(
@@ -72,11 +95,11 @@ def _numbers(item: Any, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, .
 
 def _bare_speeds(
     kind: type[BaseModel], data: Any
-) -> Iterator[tuple[tuple[Step, ...], float, tuple[str, str]]]:
-    """Path, value and possible units of each bare speed but zero."""
+) -> Iterator[tuple[tuple[Step, ...], float, _Units]]:
+    """Path, value and possible units of each bare value that is hardly in SI, but zero."""
     for steps, value in _numbers(data, ()):
-        units = _OF_SPINDLE if _is_spindle_speed(kind, steps) else _OF_CUT.get(steps)
-        if value != 0 and units is not None:
+        units = _OF_SPINDLE if _is_spindle_speed(kind, steps) else _OF_KEYS.get(steps)
+        if value != 0 and units is not None and value < units.below:
             yield steps, value, units
 
 

@@ -81,6 +81,8 @@ class QuantityField:
             return f"{math.degrees(bound):g} deg"
         if self.dimension == "length" and abs(bound) < 1.0:
             return f"{bound * 1e3:g} mm"
+        if self.dimension == "power":
+            return f"{bound * 1e-3:g} kW"
         return f"{bound:g} {units.DIMENSIONS[self.dimension].unit}".rstrip()
 
     def json_schema(self) -> dict:

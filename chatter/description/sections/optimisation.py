@@ -4,6 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from chatter.description.bare_speeds import LEAST_POWER
 from chatter.description.quantities import PositiveLength, quantity, whole_number
 from chatter.description.section import Section
 from chatter.description.sections.cut import LARGEST_FEED
@@ -35,6 +36,8 @@ class Feeds(Range):
 
 
 Margin = quantity("number", at_least=0.0, at_most=0.5)
+#: what is more than 10 mm is no limit of a tool but one in another unit
+Deflection = quantity("length", above=0.0, at_most=10e-3)
 
 
 class Optimum(Section):
@@ -44,16 +47,16 @@ class Optimum(Section):
     depths: AxialDepths | None = Field(None, description="by default those of the lobe diagram")
     radial_depths: RadialDepths | None = Field(None, description="by default that of the cut alone")
     feeds: Feeds | None = Field(None, description="by default that of the cut alone")
-    max_power: quantity("power", above=0.0) | None = Field(
+    max_power: quantity("power", at_least=LEAST_POWER) | None = Field(
         None, description="of the spindle, mean over a revolution"
     )
     max_torque: quantity("torque", above=0.0) | None = Field(
         None, description="of the spindle, mean over a revolution"
     )
-    max_deflection: PositiveLength | None = Field(
+    max_deflection: Deflection | None = Field(
         None, description="of the tool point against the work, largest within a revolution"
     )
-    max_surface_error: PositiveLength | None = Field(
+    max_surface_error: Deflection | None = Field(
         None, description="location of the wall, largest over its height, either way"
     )
     min_tool_life: quantity("time", above=0.0) | None = Field(
