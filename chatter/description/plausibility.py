@@ -6,26 +6,27 @@ import math
 from typing import TYPE_CHECKING
 
 from chatter.description.errors import InputError
+from chatter.description.usual_units import of_dimension
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
 
-#: path -> lowest, highest and unit, SI; wide enough for any machine from dental to ship yard
+#: path -> lowest and highest, SI, and dimension: wide enough for machines from dental to ship yard
 PLAUSIBLE: dict[str, tuple[float, float, str]] = {
-    "tool.diameter": (1e-6, 20.0, "m"),
-    "material.Ktc": (1e3, 1e13, "Pa"),
-    "cut.spindle_speed": (0.1, 1e6, "rad/s"),
-    "cut.feed_per_tooth": (1e-10, 1.0, "m"),
-    "cut.axial_depth": (1e-9, 10.0, "m"),
-    "lobes.speeds.from": (0.1, 1e6, "rad/s"),
-    "lobes.speeds.to": (0.1, 1e6, "rad/s"),
-    "lobes.depths.to": (1e-9, 10.0, "m"),
-    "process_damping.coefficient": (0.0, 1e12, "N/m"),
+    "tool.diameter": (1e-6, 20.0, "length"),
+    "material.Ktc": (1e3, 1e13, "pressure"),
+    "cut.spindle_speed": (0.1, 1e6, "angular_speed"),
+    "cut.feed_per_tooth": (1e-10, 1.0, "length"),
+    "cut.axial_depth": (1e-9, 10.0, "length"),
+    "lobes.speeds.from": (0.1, 1e6, "angular_speed"),
+    "lobes.speeds.to": (0.1, 1e6, "angular_speed"),
+    "lobes.depths.to": (1e-9, 10.0, "length"),
+    "process_damping.coefficient": (0.0, 1e12, "line_force"),
 }
 PLAUSIBLE_MODE: dict[str, tuple[float, float, str]] = {
-    "frequency": (0.01, 1e6, "Hz"),
-    "damping": (1e-6, 1.0, ""),
-    "modal_mass": (1e-9, 1e9, "kg"),
+    "frequency": (0.01, 1e6, "frequency"),
+    "damping": (1e-6, 1.0, "number"),
+    "modal_mass": (1e-9, 1e9, "mass"),
 }
 #: tangential coefficient times axial depth over the stiffness of a mode: a stable cut has hardly
 #: more than one, and what is far beyond takes methods for hours
@@ -100,10 +101,11 @@ def _value(case: Case, path: str) -> float | None:
 def _problem(
     name: str, path: str, value: float | None, bounds: tuple[float, float, str]
 ) -> list[str]:
-    lowest, highest, unit = bounds
+    lowest, highest, dimension = bounds
     if value is None or lowest <= value <= highest:
         return []
+    unit, factor = of_dimension(dimension)
     return [
-        f"{name}: {path}: {value:.4g} {unit} is out of any plausible range, "
-        f"{lowest:g} to {highest:g} {unit}".rstrip()
+        f"{name}: {path}: {f'{value * factor:.4g} {unit}'.rstrip()} is out of any plausible range, "
+        f"{lowest * factor:.3g} to {highest * factor:.3g} {unit}".rstrip()
     ]

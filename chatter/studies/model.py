@@ -14,7 +14,9 @@ from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
 from chatter.description.quantities import QuantityField
-from chatter.description.toml_document import parse_document, read_text
+from chatter.description.toml_document import parse_document, read_text, value_at
+from chatter.description.units import QuantityError, parse
+from chatter.description.usual_units import usual_unit
 from chatter.studies.program import program
 
 if TYPE_CHECKING:
@@ -66,6 +68,21 @@ def value_of(model: Model, path: str) -> Any:
         return where.get(inside)
     except InputError:
         return None
+
+
+def unit_at(model: Model, path: str) -> str:
+    """Unit in which the file states the quantity at a path, else that in which people read it."""
+    where, inside = _into(model, path)
+    steps = parse_path(inside, f"a {where.NOUN}")
+    stands = value_at(parse_document(where.to_toml(), where.name), steps)
+    kind = field_at(type(where), steps)
+    if kind is not None and isinstance(stands, str):
+        try:
+            return parse(stands, kind.matching(stands).dimension).unit
+        except QuantityError:
+            # a share of another value, such as "30 %" of the diameter
+            pass
+    return usual_unit(type(where), inside).name
 
 
 def field_of(model: Model, path: str) -> QuantityField | None:

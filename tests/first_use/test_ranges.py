@@ -2,9 +2,12 @@
 
 import pytest
 
+import chatter
+from chatter import InputError
 from chatter.studies.whatif.whatif_study import whatif
 from tests.command_line import chatter_command
 from tests.first_use.shop import cut, written
+from tests.places import EXAMPLES
 
 DEPTH = "cut.axial_depth"
 WIDTH = "cut.radial_depth"
@@ -63,6 +66,42 @@ def test_a_wrong_change(change, told, tmp_path):
     result = chatter_command("whatif", written(tmp_path), "--vary", f"{WIDTH}={change}")
     assert result.exit_code == 2
     assert told in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        # in the unit of the file; it was -0.0005, "a bare number is in m"
+        ("cut.axial_depth", '+-200% of 0.5 mm: "-0.5 mm" is out of range'),
+        ("cut.cutting_speed", '+-200% of 60 m/min: "-60 m/min" is out of range'),
+        ("tool.helix", '+-200% of 40 deg: "120 deg" is out of range; it must be less than 90 deg'),
+        ("material.Ktc", '+-200% of 1900 MPa: "-1900 MPa" is out of range'),
+        ("structure.mode[*].stiffness", '+-200% of 12 N/um: "-12 N/um" is out of range'),
+        ("structure.mode[1].damping", "+-200% of 0.03: -0.03 is out of range"),
+        # not in the file as it is: the usual unit
+        ("cut.spindle_speed", 'rpm: "-1193.66207318922 rpm" is out of range'),
+    ],
+)
+def test_a_change_beyond_what_a_quantity_may_be_is_told_in_the_unit_of_the_file(
+    path, told, tmp_path
+):
+    result = chatter_command("whatif", written(tmp_path), "--vary", f"{path}=+-200%")
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert "a bare number" not in result.stderr
+
+
+def test_a_change_beyond_the_range_in_the_machine_is_told_in_its_unit(tmp_path):
+    machine = EXAMPLES / "machine-gantry" / "machine-of-beams.toml"
+    result = chatter_command("whatif", machine, "--vary", "body.head.mass=+-200%")
+    assert result.exit_code == 2
+    assert 'body.head.mass: +-200% of 47 kg: "-47 kg" is out of range' in result.stderr
+
+
+def test_a_speed_that_no_spindle_has_is_told_in_rpm():
+    """ "2.618e+06 rad/s is out of any plausible range" answered a speed in rpm."""
+    with pytest.raises(InputError, match=r"2\.5e\+07 rpm is out of any plausible range, 0\.955 to"):
+        chatter.check(cut(cut__spindle_speed="2.5e7 rpm"))
 
 
 def test_one_value_alone_is_answered():

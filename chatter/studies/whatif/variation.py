@@ -18,9 +18,9 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
-from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
+from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor, write
 from chatter.studies.counted_range import counted_range
-from chatter.studies.model import PREFIX, field_of, value_of
+from chatter.studies.model import PREFIX, field_of, unit_at, value_of
 
 if TYPE_CHECKING:
     from chatter.studies.model import Model
@@ -249,6 +249,27 @@ def _relative(model: Model, path: str, share: float, kind: QuantityField | None)
             path.replace("[*]", f"[{index}]", 1) if several else path: factor * float(number)
             for index, number in enumerate(numbers)
         }
+        for own, number in patch.items():
+            _check_change(model, own, share, number, kind)
         label = f"{100.0 * (factor - 1.0):+.4g} %"
         values.append(Value(label, patch, 100.0 * (factor - 1.0)))
     return Variation(path, tuple(values), "%")
+
+
+def _check_change(
+    model: Model, path: str, share: float, number: float, kind: QuantityField
+) -> None:
+    """Refuse a value, SI, that a change of what stands leads to, in the unit of the file."""
+    unit = unit_at(model, path)
+    sample = kind.matching(f"1 {unit}") if unit else kind
+    try:
+        sample.read(write(number, unit, sample.dimension))
+    except ValueError as error:
+        standing = _shown(value_of(model, path), unit, sample)
+        change = f"+-{100.0 * share:.4g}%"
+        raise InputError(f"{model.name}: --vary {path}: {change} of {standing}: {error}") from None
+
+
+def _shown(number: float, unit: str, kind: QuantityField) -> str:
+    """Value, SI, in a unit."""
+    return f"{number / unit_factor(unit, kind.dimension):.6g} {unit}".rstrip()
