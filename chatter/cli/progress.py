@@ -67,13 +67,20 @@ class RunningWork:
         self._reports: deque[tuple[float, int]] = deque()
         self._newest: tuple[float, int, int] | None = None
         self._announced = False
+        #: whether code was compiled since the last report
+        self._compiled = False
         #: elapsed time and total of an estimate that waits for another like it, s
         self._estimate: tuple[float, float] | None = None
 
     def __call__(self, done: int, total: int) -> None:
         """Report how many of all parts are done."""
         now = self._clock()
-        if not self._reports:
+        if self._compiled or self._is_compiling():
+            # what was compiled is compiled once: the time that it took is no pace
+            self._reports.clear()
+            self._reports.append((now, done))
+            self._compiled = False
+        elif not self._reports:
             # what is reported at once was finished before, by an earlier run
             at_once = now - self._begun < _PACE
             self._reports.append((now, done) if at_once else (self._begun, 0))
@@ -152,6 +159,7 @@ class RunningWork:
 
     def announcement(self) -> str | None:
         """Sentence, once, that the work takes minutes, as soon as its pace shows it."""
+        self._compiled |= self._is_compiling()
         left = self.remaining()
         if self._announced or left is None or left < max(LONG - self.elapsed, _REST):
             return None

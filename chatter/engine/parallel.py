@@ -5,6 +5,7 @@ be sent to other processes, go through an `Executor`; that of a Dask cluster is 
 `chatter.studies.executor`.
 """
 
+import math
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -122,6 +123,15 @@ def each(
     return [found for part in parts for found in part]
 
 
+def scattered(count: int) -> NDArray[np.int64]:
+    """Order of the indices 0 .. count-1 in which any of the first are spread over all.
+
+    Points of a sweep take longer at one end, low speeds say: begun in this order they keep one
+    pace, by which the rest is estimated. By the golden ratio (Weyl's sequence).
+    """
+    return np.argsort(np.arange(count) * (0.5 * (math.sqrt(5.0) - 1.0)) % 1.0, kind="stable")
+
+
 def sweep(
     function: Callable[[NDArray[np.int64]], Result],
     count: int,
@@ -160,7 +170,8 @@ def sweep(
         progress(count, count)
         return results
     with _threads() as pool:
-        futures = [pool.submit(function, chunk) for chunk in chunks]
+        begun = {int(k): pool.submit(function, chunks[k]) for k in scattered(len(chunks))}
+        futures = [begun[k] for k in range(len(chunks))]
         try:
             # counted as they finish, whichever they are; results and errors in order
             sizes = dict(zip(futures, map(len, chunks), strict=True))

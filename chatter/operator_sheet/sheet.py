@@ -5,13 +5,12 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress, no_progress
+from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.whole_files import write_whole
 from chatter.io.result_files import as_json, presentation, short_repr, write_results
 from chatter.operator_sheet.cuts import CaseCuts, cuts_of
@@ -20,8 +19,6 @@ from chatter.operator_sheet.workbook import workbook_of
 from chatter.stability.lobes import lobes
 from chatter.stability.neglected_effects import STABLE
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
-
-_PERCENT = 100
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +72,8 @@ def sheet(
     ----------
     cases : path, Case, or sequence of them
     progress : callable, optional
-        Called with (done, total) percent of the cases.
+        Called with (done, total) of the part under way: limits at all speeds of the first case,
+        the lowest one between them, and so on.
 
     Raises
     ------
@@ -87,20 +85,35 @@ def sheet(
     if not given:
         raise InputError("no case is given; a sheet is of one case or more")
     found = []
-    for place, one in enumerate(given):
-        part = partial(_of_all, progress, place, len(given))
-        found.append(_cuts(one if isinstance(one, Case) else load(one), part))
-        part(1, 1)
+    for place, one in enumerate(given, start=1):
+        case = one if isinstance(one, Case) else load(one)
+        which = f"{case.name} ({place} of {len(given)}): " if len(given) > 1 else ""
+        found.append(_cuts(case, _PartsOfCase(progress, which)))
     return Sheet(tuple(found))
 
 
-def _of_all(progress: Progress, place: int, cases: int, done: int, total: int) -> None:
-    """Report the speeds of one case that are done as percent of all cases."""
-    progress(_PERCENT * place + _PERCENT * done // total, _PERCENT * cases)
+class _PartsOfCase:
+    """Progress of one case, the parts of which count and are timed anew.
+
+    Parts of a case, and cases, differ in what they take: no pace holds for all of them.
+    """
+
+    def __init__(self, progress: Progress, which: str) -> None:
+        self._progress, self._which = progress, which
+
+    def __call__(self, done: int, total: int) -> None:
+        """Report how many pieces of the part are done."""
+        self._progress(done, total)
+
+    def begin(self, description: str) -> None:
+        """Announce another part."""
+        begin(self._progress, f"{self._which}{description}")
 
 
 def _cuts(case: Case, progress: Progress) -> CaseCuts:
+    begin(progress, "limits at all speeds")
     diagram = lobes(case, progress=progress)
+    begin(progress, "variation of the spindle speed")
     variation = variation_that_helps(case, float(diagram.operating.critical_depth[0]))
     return CaseCuts(case, diagram, cuts_of(diagram), variation)
 

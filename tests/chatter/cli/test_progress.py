@@ -150,6 +150,22 @@ def test_compiling_is_named(clock):
     assert "compiling" not in work.line()
 
 
+def test_the_time_of_compiling_is_no_pace(clock):
+    """A bifurcation of half a minute was announced with 22: code was compiled for the first cut."""
+    compiling = True
+    work = RunningWork("cuts", clock, is_compiling=lambda: compiling)
+    clock.now += 50.0
+    assert work.announcement() is None  # looked at while code is compiled
+    clock.now += 50.0
+    compiling = False
+    work(1, 25)
+    assert work.remaining() is None
+    assert work.announcement() is None
+    clock.now += 2.0
+    work(2, 25)
+    assert work.remaining() == pytest.approx(46.0)
+
+
 def test_compilation_is_seen_while_it_goes_on():
     import numba
 

@@ -2,10 +2,11 @@
 
 import threading
 
+import numpy as np
 import pytest
 
 from chatter.engine import parallel
-from chatter.engine.parallel import each
+from chatter.engine.parallel import each, scattered
 
 
 @pytest.fixture(autouse=True)
@@ -60,3 +61,23 @@ def test_progress_may_give_up():
 
     with pytest.raises(KeyboardInterrupt):
         each(abs, 50, progress)
+
+
+def test_points_are_begun_all_over_the_sweep():
+    """Low speeds came first and took longest: a sheet was announced with twice its time."""
+    begun = []
+    assert each(lambda index: begun.append(index) or index, 40) == list(range(40))
+    # any tenth of them is spread: none further from one of the first 4 than a half of the whole
+    assert np.ptp(begun[:4]) >= 20
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 100, 1000])
+def test_every_part_of_the_order_is_spread_evenly(count):
+    order = scattered(count)
+    assert sorted(order) == list(range(count))
+    cost = 1.0 / (1.0 + np.arange(count))  # as of low speeds
+    if count >= 100:
+        half = cost[order[: count // 2]].sum() / cost.sum()
+        assert 0.3 < half < 0.7
+        # in their own order a tenth of the points has half of the cost
+        assert cost[: count // 10].sum() > 0.5 * cost.sum()

@@ -89,3 +89,31 @@ def test_variation_helps_where_the_lobes_are_dense():
 def test_no_case():
     with pytest.raises(InputError, match="no case"):
         chatter.sheet([])
+
+
+def test_progress_names_its_parts_and_never_goes_back():
+    """It went to 100 %, then counted the next part of the same case from 0 % again."""
+
+    class Reported:
+        parts: list
+
+        def __init__(self):
+            self.parts = []
+
+        def begin(self, description):
+            self.parts.append((description, []))
+
+        def __call__(self, done, total):
+            self.parts[-1][1].append(done / total)
+
+    reported = Reported()
+    chatter.sheet([STEEL, TWO], progress=reported)
+    names = [name for name, _ in reported.parts]
+    assert len(set(names)) == len(names)
+    assert f"{STEEL} (1 of 2): limits at all speeds" in names
+    assert f"{TWO} (2 of 2): lowest limit between the speeds" in names
+    (shares,) = [
+        shares for name, shares in reported.parts if name.startswith(f"{STEEL} (1 of 2): limits")
+    ]
+    assert shares == sorted(shares)
+    assert shares[-1] > 0.5
