@@ -7,7 +7,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
-from chatter.report.console import print_json, print_line, print_table, print_written
+from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
 
 
 def move(
@@ -28,11 +28,13 @@ def move(
     sections = move_sections(file, only)
     folder = options.output_folder(out, machine.stem)
     summaries, written, interrupted = {}, [], False
+    behind: list[str] = []
     for name, section in sections.items():
         with progress_bar(f"move {name}", run) as progress:
             result = file_move(file, name, section, progress)
         written += result.save(folder / name if len(sections) > 1 else folder)
         summaries[name] = result.summary()
+        behind += [f"{name}: {text}" for text in result.left_behind()]
         interrupted = interrupted or result.interrupted
         if interrupted:
             break
@@ -40,6 +42,7 @@ def move(
         print_json(summaries)
     else:
         _print_errors(summaries)
+    print_notes(behind)
     print_written(written)
     if interrupted:
         raise typer.Exit(EXIT_RUN_FAILED)

@@ -118,6 +118,14 @@ class LinearisedMachine:
     @cached_property
     def _fitted(self) -> FittedModes:
         highest = _ABOVE * max(mode.frequency for mode in self._guess)
+        if highest <= _LOWEST:
+            raise InputError(
+                [
+                    f"{self.cut.file.name}: what is most flexible at the tool has its modes at "
+                    f"{highest / _ABOVE:.2g} Hz and below: a stiffness is hardly that of a machine",
+                    *self.cut.file.notes,
+                ]
+            )
         lines = lines_around(self._guess, _LOWEST, highest)
         values = tool_receptance(self.case, self.cut, lines, self.excluded)
         modes = real_modes(lines, values, self._guess)

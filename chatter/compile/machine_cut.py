@@ -102,8 +102,18 @@ def cut_on(
     tool, spindle, sense = _rows(case, file, machine, positions, name)
     travels = _travels(machine, tool, [one for one in machine.axes if one != name])
     feeds = travels.get("x", {})
-    notes = (*file.notes, *_notes_on_contact(case, file))
+    notes = (*file.notes, *_notes_on_workpiece(file), *_notes_on_contact(case, file))
     return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels, notes)
+
+
+def _notes_on_workpiece(file: MachineFile) -> tuple[str, ...]:
+    """Say that nothing of the machine yields under the work where the file has no such point."""
+    if file.workpiece is not None:
+        return ()
+    return (
+        f"{file.name} has no workpiece: the work is taken as rigid, and what carries it is not in "
+        "this cut",
+    )
 
 
 def _notes_on_contact(case: Case, file: MachineFile) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.linearised_machine import LinearisedMachine
 from chatter.description.errors import InputError
+from chatter.description.machine.machine_file import MachineFile
 from chatter.engine.loop import Laws, run
 from dynamics.control.cascade import DriveController
 from dynamics.control.current_loop import RegulatedMotor
@@ -125,31 +126,36 @@ def _decisive_motion(machine: Machine, step: float) -> _DecisiveMotion | None:
     return _DecisiveMotion(growth, motion.real, tables, drives)
 
 
-def refuse_unstable_control(machine: Machine, step: float) -> None:
+def refuse_unstable_control(machine: Machine, step: float, file: MachineFile | None = None) -> None:
     """Refuse a machine whose control loops are unstable.
 
     Raises
     ------
     InputError
-        Naming the drive, the frequency and the growth.
+        Naming the drive, the frequency and the growth, with the file that it was made of and its
+        unlikely values where it is given.
     """
     decisive = _decisive_motion(machine, step)
     if decisive is None or decisive.growth_rate <= _NEUTRAL:
         return
     motion = _described(machine, decisive)
     gains = {drive.name: drive.controller for drive in machine.drives}[motion.drive]
-    raise InputError(
-        f'axis "{motion.drive}": its control loop is unstable: a motion of about '
+    time = gains.velocity.integral_time
+    integral = f"integral time {time:g} s" if math.isfinite(time) else "no integral part"
+    where = f"{file.name}: axis.{motion.drive}" if file is not None else f'axis "{motion.drive}"'
+    unstable = (
+        f"{where}: its control loop is unstable: a motion of about "
         f"{motion.frequency:.3g} Hz grows by {motion.growth_rate:.3g} 1/s; velocity gain "
-        f"{gains.velocity.proportional_gain:g} N m s/rad, integral time "
-        f"{gains.velocity.integral_time:g} s, position gain {gains.position.gain:g} 1/s"
+        f"{gains.velocity.proportional_gain:g} N m s/rad, {integral}, "
+        f"position gain {gains.position.gain:g} 1/s"
     )
+    raise InputError([unstable, *(() if file is None else file.notes)])
 
 
 def refuse_unstable_structure(structure: object) -> None:
     """Refuse a linearised machine whose control loops are unstable; other structures have none."""
     if isinstance(structure, LinearisedMachine):
-        refuse_unstable_control(structure.cut.machine, structure.cut.file.step)
+        refuse_unstable_control(structure.cut.machine, structure.cut.file.step, structure.cut.file)
 
 
 def without_limits(controller: DriveController) -> DriveController:

@@ -52,7 +52,7 @@ def machine_in_time(
         _refuse_unmoved(case, cut, course)
     fastest = case.cut.spindle_speed if course is None else course.fastest
     step = _step(case, cut, cutter, fastest)
-    refuse_unstable_control(cut.machine, step)
+    refuse_unstable_control(cut.machine, step, cut.file)
     modes = cut.modes()
     resolution = _resolution(case, cutter, modes, step)
     speed = case.cut.spindle_speed

@@ -24,6 +24,7 @@ from chatter.description.machine.frequency_response import FrfSection
 from chatter.description.machine.friction import FrictionSection
 from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.move import MoveSection
+from chatter.description.machine.questioned_machine import questions_of_machine
 from chatter.description.machine.references import dimension_problems, reference_problems
 from chatter.description.patchable import Description
 from chatter.description.path import Step
@@ -136,6 +137,12 @@ class MachineFile(Description):
             except ValueError as error:
                 problems.append((key, sentence(error, key)))
         return problems
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know of the file: renamed keys, and unlikely values."""
+        asked = (f"{self.name}: {text}" for text in questions_of_machine(self))
+        return (*super().notes, *asked)
 
     @property
     def part_names(self) -> tuple[str, ...]:

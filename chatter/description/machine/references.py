@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.machine.fields import name_problems
+from chatter.description.machine.frequency_response import parse_tested_point
 from chatter.description.path import Step, field_at, join_path
 from chatter.description.quantities import EitherQuantityField
 from chatter.description.wording import nearest
@@ -150,6 +151,15 @@ def dimension_problems(file: MachineFile, data: Mapping[str, Any]) -> list[Probl
         problems += _of_the_other_kind(
             type(file), ("friction", name), data["friction"][name], straight
         )
+    for name, test in file.frf.items():
+        tested = parse_tested_point(test.excite)
+        # a torque belongs to a motor that turns, or about an axis of a point
+        straight = not (tested.direction or "").startswith("r")
+        if tested.motor is not None:
+            drive = file.axis[tested.motor].drive if tested.motor in file.axis else None
+            straight = drive is not None and drive.motor_is_linear
+        level = data["frf"][name].get("level")
+        problems += _of_the_other_kind(type(file), ("frf", name, "level"), level, straight)
     return problems
 
 

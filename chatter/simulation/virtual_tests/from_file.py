@@ -38,6 +38,8 @@ Section = TypeVar("Section", FrfSection, MoveSection)
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 #: velocity below which an axis rests, m/s
 _RESTING = 1e-12
+#: steps of a move in time: what its signals take up fits no memory beyond
+_MOST_STEPS = 1e9
 #: instants at which a move is looked at for how far it goes
 _SAMPLES = 2000
 
@@ -207,6 +209,10 @@ def file_move(
     InputError if the section does not fit the machine, RunError if the machine runs away.
     """
     where = f"{file.name}: move.{name}"
+    for axis in section.axes:
+        drive = file.axis[axis].drive if axis in file.axis else None
+        if drive is not None and drive.is_rotary:
+            raise InputError(f"{where}.axes: axis {axis} turns; a move is along axes that travel")
     machine = in_state(file, section)
     try:
         course = course_of(section)
@@ -217,6 +223,12 @@ def file_move(
     plan = MovePlan(
         course.trajectory, section.axes, cycle, section.standstill, section.afterwards, course.path
     )
+    steps = (section.standstill + course.trajectory.duration + section.afterwards) / file.step
+    if not steps <= _MOST_STEPS:
+        raise InputError(
+            f"{where}: the move lasts {steps * file.step:.3g} s, {steps:.2g} steps of "
+            f"{1e6 * file.step:g} us (step); at most {_MOST_STEPS:.0e} are allowed"
+        )
     title = file.title or file.name
     with _told_with(where, file.name):
         along = _along(file, section, machine, plan)

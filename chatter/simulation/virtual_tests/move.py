@@ -27,6 +27,9 @@ from dynamics.trajectory.spatial_path import PathInSpace
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+#: share of its way by which an axis is left behind
+_LEFT_BEHIND = 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class MovePlan:
@@ -100,6 +103,21 @@ class MoveResult:
             "interrupted": self.interrupted,
             **energy,
         }
+
+    def left_behind(self) -> list[str]:
+        """Sentences on axes that do not follow their set points."""
+        told = []
+        for column, axis in enumerate(self.axes):
+            travel = float(np.ptp(self.wanted[:, column])) if self.time.size else 0.0
+            error = float(np.abs(self.tracking_error[:, column]).max(initial=0.0))
+            if error > _LEFT_BEHIND * travel > 0.0:
+                effort = float(np.abs(self.effort[:, column]).max())
+                told.append(
+                    f"axis {axis} does not follow: it is up to {1e3 * error:.4g} mm behind on a "
+                    f"way of {1e3 * travel:.4g} mm, with at most {effort:.4g} "
+                    f"{self.effort_unit(column).replace('*', ' ')}"
+                )
+        return told
 
     def plot(self) -> Figure:
         """Picture of the move."""

@@ -58,3 +58,13 @@ def test_what_modes_miss_is_told_where_the_structure_resonates():
     left = 1.0 / (300.0 * (2.0 * np.pi) ** 2 * (70.0**2 - 20.0**2))
     assert told[0] == pytest.approx(left / peak, abs=6e-4)  # told to a tenth of a percent
     assert "above 70 Hz" in note
+
+
+def test_a_machine_without_a_workpiece_is_said_to_have_none(case):
+    (note,) = [one for one in machine_structure(case).notes if "no workpiece" in one]
+    assert "the work is taken as rigid" in note
+    file = case.machine_file().patch(
+        {"workpiece": "tip", "point.floor": {"on": "head", "at": [0.0, 0.0, 0.1]}}
+    )
+    with_work = case.with_machine(file.patch({"workpiece": "floor"}))
+    assert not any("no workpiece" in one for one in machine_structure(with_work).cut.notes)

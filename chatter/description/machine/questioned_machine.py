@@ -1,0 +1,102 @@
+"""Numbers that a machine may have, yet none is likely to: asked about in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from chatter.description.machine.axis import AxisSection
+    from chatter.description.machine.bodies import BodySection
+    from chatter.description.machine.machine_file import MachineFile
+
+
+class _Usual(NamedTuple):
+    """Range of what is usual, SI, with the unit that it is read in."""
+
+    low: float
+    high: float
+    unit: str
+    factor: float  # of the unit, from SI
+    of: str
+
+
+#: wide: from a micro machine to a gantry of a ship yard
+_IN_DRIVE = {
+    "lead": _Usual(0.2e-3, 0.2, "mm", 1e3, "ball screws"),
+    "motor_inertia": _Usual(1e-8, 5.0, "kg*m^2", 1.0, "motors of feed drives"),
+    "screw_inertia": _Usual(0.0, 20.0, "kg*m^2", 1.0, "screws"),
+    "nut_stiffness": _Usual(1e6, 1e11, "N/um", 1e-6, "nuts"),
+    "bearing_stiffness": _Usual(1e6, 1e11, "N/um", 1e-6, "bearings of screws"),
+    "mesh_stiffness": _Usual(1e6, 1e11, "N/um", 1e-6, "racks"),
+    "pinion_radius": _Usual(2e-3, 2.0, "mm", 1e3, "pinions"),
+}
+_GAIN = _Usual(0.5, 2e3, "1/s", 1.0, "position loops of feed drives")
+_INTEGRAL_TIME = _Usual(0.1e-3, 10.0, "ms", 1e3, "velocity loops")
+_TIME_CONSTANT = _Usual(1e-6, 50e-3, "ms", 1e3, "current loops")
+#: mass over the volume of its block: a frame of tubes is light, tungsten is dense
+_DENSITY = _Usual(20.0, 25e3, "kg/m^3", 1.0, "parts of machines")
+_STEP = _Usual(0.5e-6, 2e-3, "us", 1e6, "runs of machines in time")
+
+
+def questions_of_machine(file: MachineFile) -> list[str]:
+    """Sentences on values of a machine that are far from what is usual."""
+    asked = _question("step", file.step, _STEP)
+    for name, body in file.body.items():
+        asked += _question_of_density(f"body.{name}.mass", body)
+    for name, axis in file.axis.items():
+        asked += _questions_of_axis(f"axis.{name}", axis)
+    return asked
+
+
+def _question_of_density(path: str, body: BodySection) -> list[str]:
+    """Ask about a mass that no block of its size has."""
+    if body.size is None:
+        return []
+    length, width, height = body.size
+    density = body.mass / (length * width * height)
+    if _DENSITY.low <= density <= _DENSITY.high:
+        return []
+    return [
+        f"{path}: is {body.mass:.4g} kg meant? a block of its size would have "
+        f"{density:.3g} kg/m^3; {_DENSITY.of} have {_ends(_DENSITY)}"
+    ]
+
+
+def _questions_of_axis(path: str, axis: AxisSection) -> Iterator[str]:
+    drive, control = axis.drive, axis.control
+    if drive is None:
+        return
+    for key, usual in _IN_DRIVE.items():
+        value = getattr(drive, key)
+        if value is not None:
+            yield from _question(f"{path}.drive.{key}", abs(value), usual)
+    if drive.kind == "spindle" or axis.moving is None:
+        return
+    if control is None:
+        if axis.brake is None:
+            yield f"{path}: has neither control nor brake: its motor turns freely"
+        return
+    position, velocity, current = control.position, control.velocity, control.current
+    if position.gain == 0.0:
+        yield f"{path}.control.position.gain: is 0 meant? nothing holds the position of the axis"
+    else:
+        yield from _question(f"{path}.control.position.gain", position.gain, _GAIN)
+    if velocity.integral_time is not None:
+        at = f"{path}.control.velocity.integral_time"
+        yield from _question(at, velocity.integral_time, _INTEGRAL_TIME)
+    if current.time_constant is not None:
+        at = f"{path}.control.current.time_constant"
+        yield from _question(at, current.time_constant, _TIME_CONSTANT)
+
+
+def _question(name: str, value: float, usual: _Usual) -> list[str]:
+    if usual.low <= value <= usual.high:
+        return []
+    given = f"{value * usual.factor:.5g} {usual.unit}"
+    return [f"{name}: is {given} meant? {usual.of} have {_ends(usual)}"]
+
+
+def _ends(usual: _Usual) -> str:
+    low, high = usual.low * usual.factor, usual.high * usual.factor
+    return f"{low:.4g} to {high:.4g} {usual.unit}"
