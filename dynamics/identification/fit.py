@@ -154,6 +154,20 @@ def identify_modes(
     return result
 
 
+def delay_between_channels(frf: Frf) -> float:
+    """Lag of the response behind the force in an FRF of a drive point, s; 0 where it shows none.
+
+    From the stable poles of its own stabilisation diagram, which need no refinement for it.
+    MeasurementError for input that cannot be used.
+    """
+    measurement = prepare([frf], None)
+    frf_set = sets_with_common_poles(measurement.frfs, None)[0]
+    records = measurement.of(frf_set.members, measurement.searched)
+    frequency, damping = stable_poles(_diagram(records, measurement.frfs, None))
+    model = fit_residues(records, 2.0 * np.pi * frequency, damping, ALL_TERMS)
+    return channel_delay(records, model, np.array([True]))
+
+
 def _nothing_found(measurement: Measurement, frf_set: FrfSet, max_order: int | None) -> str:
     """Say why there may be no mode: noise, or a spectrum of the other time convention."""
     source = measurement.frfs[0].source or "FRF"

@@ -1,6 +1,6 @@
 """FRFs at the tool point: idle, and while tool and workpiece touch."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,6 +16,7 @@ from chatter.explain.criteria import (
     LEAST_GAIN_SHARE_OF_FRFS,
     LEAST_SHARE_IN_PART_OF_FRFS,
 )
+from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
 from chatter.explain.fitting import Parameter, with_priors, within_reach
@@ -23,6 +24,8 @@ from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals, of_secti
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.same_case import OfSameCase
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.response_delay import without_delay
+from chatter.explain.records.response_scatter import scatter
 from chatter.explain.residuals.over_lines import by_condition, over_lines
 from dynamics.modal.modes import receptance_matrix
 
@@ -31,8 +34,6 @@ IN_CUT = "in_cut"
 _BETWEEN = ", "
 _CHANNELS = ("real", "imag")
 _AXES = "xyz"
-#: lines over which the scatter is taken for one
-_SMOOTHED = 31
 #: cases without what an FRF does not depend on, and receptances, that are kept
 _KEPT = 48
 
@@ -68,6 +69,10 @@ class FrequencyResponse(Kind):
         """Real and imaginary part."""
         return _CHANNELS
 
+    def as_recorded(self, measurement: Measurement) -> tuple[Measurement, list[SignalFinding]]:
+        """FRFs without the delay between the channels of force and response."""
+        return without_delay(measurement)
+
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement with the scatter of its FRFs at every line.
 
@@ -82,7 +87,7 @@ class FrequencyResponse(Kind):
                 if (other.condition, other.direction) == (run.condition, run.direction)
                 and other.signals["real"].size == run.signals["real"].size
             ]
-            runs.append(replace(run, record=FrfRecord(_scatter(run, alike))))
+            runs.append(replace(run, record=FrfRecord(scatter(run, alike))))
         return measurement.with_runs(runs)
 
     def predict(self, case: Case, run: Run) -> Signals:
@@ -114,10 +119,10 @@ class FrequencyResponse(Kind):
 
     def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Predicted less measured over the scatter of every line."""
-        scatter = run.record.scatter
+        own = run.record.scatter
         return np.concatenate(
             [
-                (predicted[channel] - run.signals[channel]) * (run.weight(channel) / scatter)
+                (predicted[channel] - run.signals[channel]) * (run.weight(channel) / own)
                 for channel in _CHANNELS
             ]
         )
@@ -126,8 +131,8 @@ class FrequencyResponse(Kind):
         self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
     ) -> Deviation:
         """Scatter of every line."""
-        scatter = run.record.scatter
-        return Deviation(scatter, float(np.sqrt(np.mean(scatter**2))))
+        own = run.record.scatter
+        return Deviation(own, float(np.sqrt(np.mean(own**2))))
 
     def searched_at_start(self, measurement: Measurement) -> list[Parameter]:
         """Values of a machine, whose resonances move farther than they are wide."""
@@ -188,33 +193,3 @@ def touching(free: Array, frequency: Array, stiffness: float, damping: float) ->
     for axis in range(2):
         joint[:, axis, axis] = stiffness + 2j * np.pi * frequency * damping
     return np.linalg.solve(np.eye(3) + free @ joint, free)
-
-
-def _scatter(run: Run, alike: Sequence[Run]) -> Array:
-    """Standard deviation of real and imaginary part at every line, from repetitions."""
-    values = np.array([one.signals["real"] + 1j * one.signals["imag"] for one in alike])
-    if len(values) > 1:
-        spread = np.sum(np.abs(values - values.mean(axis=0)) ** 2, axis=0) / (2 * (len(values) - 1))
-    else:
-        own = run.signals["real"] + 1j * run.signals["imag"]
-        spread = np.abs(np.convolve(own, [1, -2, 1], mode="same")) ** 2 / 12.0
-    return np.sqrt(_smoothed(spread, np.abs(values.mean(axis=0)) ** 2))
-
-
-def _smoothed(spread: Array, square: Array) -> Array:
-    """Variance at every line, from its spread about it, with the square of the response.
-
-    Part of it is near enough the same over some lines, as that of a sensor, and part a share of the
-    response, as that of a hammer test: a straight line over the square, of parts not below nothing.
-    """
-    spreads, squares = (
-        np.lib.stride_tricks.sliding_window_view(
-            np.pad(one, _SMOOTHED // 2, mode="reflect"), _SMOOTHED
-        )
-        for one in (spread, square)
-    )
-    mean, level = spreads.mean(axis=1), squares.mean(axis=1)
-    away = squares - level[:, None]
-    slope = np.sum(away * spreads, axis=1) / np.maximum(np.sum(away**2, axis=1), 1e-300)
-    share = np.clip(slope, 0.0, mean / np.maximum(level, 1e-300))
-    return mean + share * (square - level)

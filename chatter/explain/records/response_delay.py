@@ -1,0 +1,140 @@
+"""Delay between the channels of force and response of FRFs.
+
+Power flows into a passive structure at a drive point, so that the imaginary part of a receptance
+is nowhere above zero. A delay of the measuring chain turns the phase in proportion to the
+frequency and breaks this; it is looked for only where it is broken, as the real residues of a
+structure without such a delay may well be a little complex.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.explain.data_checks.finding import NOTE, SignalFinding
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.response_scatter import scatter
+from dynamics.frf.container import Frf, MeasurementError
+from dynamics.identification.fit import delay_between_channels
+
+_AXES = "xyz"
+#: lines over which the imaginary part is averaged
+_LINES = 31
+#: averages above zero in their standard deviations, and over the response as a phase, rad
+_BEYOND_SCATTER, _LEAST_PHASE = 6.0, 0.02
+#: share of what is above zero that may remain without the delay
+_REMAINS = 0.25
+#: share of the summed imaginary part above zero from which the sign is wrong, not the delay
+_SIGN_TURNED = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class _DrivePoint:
+    """Receptance (n,), m/N, of a drive point at frequencies (n,), Hz, with its scatter (n,)."""
+
+    frequency: NDArray[np.float64]
+    values: NDArray[np.complex128]
+    scatter: NDArray[np.float64]
+
+    def above(self, delay: float = 0.0) -> NDArray[np.float64]:
+        """Averages of the imaginary part above zero without a delay, s, in their deviations."""
+        turned = _advanced(self.values, self.frequency, delay).imag
+        mean, size = _averaged(turned), _averaged(np.abs(self.values))
+        deviation = np.sqrt(_averaged(self.scatter**2) / min(_LINES, self.values.size))
+        least = np.maximum(_BEYOND_SCATTER * deviation, _LEAST_PHASE * size)
+        return np.where(mean > least, mean / np.maximum(deviation, 1e-300), 0.0)
+
+    def is_broken(self) -> bool:
+        """Whether power flows out at some lines, and the sign is right."""
+        imaginary = self.values.imag
+        turned = np.sum(np.maximum(imaginary, 0.0)) > _SIGN_TURNED * np.sum(np.abs(imaginary))
+        return bool(np.any(self.above()) and not turned)
+
+    def lines(self) -> NDArray[np.float64]:
+        """Frequencies, Hz, at which power flows out."""
+        return _averaged(self.frequency)[self.above() > 0.0]
+
+
+def without_delay(measurement: Measurement) -> tuple[Measurement, list[SignalFinding]]:
+    """Take the delay of the response channels off, by axis, where a drive point shows one.
+
+    A machine is left as it was measured: its control may well give power.
+    """
+    if measurement.case.on_machine:
+        return measurement, []
+    runs, notes = list(measurement.runs), []
+    for axis in _AXES:
+        read = [run for run in runs if run.direction[:1] == axis and run.direction[-1] in _AXES]
+        drives = [_drive_point(run, read) for run in read if set(run.direction) == {axis}]
+        broken = [one for one in drives if one.is_broken()]
+        if 2 * len(broken) <= len(drives):
+            continue
+        delay = _common_delay(broken)
+        notes.append(SignalFinding(NOTE, "", "real, imag", _sentence(axis, broken, delay)))
+        runs = [_without(run, delay) if run in read else run for run in runs]
+    return measurement.with_runs(runs), notes
+
+
+def _drive_point(run: Run, read: Sequence[Run]) -> _DrivePoint:
+    repetitions = [
+        one
+        for one in read
+        if (one.condition, one.direction) == (run.condition, run.direction)
+        and one.signals["real"].size == run.signals["real"].size
+    ]
+    values = run.signals["real"] + 1j * run.signals["imag"]
+    return _DrivePoint(run.signals["frequency"], values, scatter(run, repetitions))
+
+
+def _common_delay(drives: Sequence[_DrivePoint]) -> float:
+    """Median of the delays of FRFs, s; 0 where it does not make them passive."""
+    found = [_delay(one) for one in drives]
+    delay = float(np.median(found))
+    remains, all_of_it = (
+        sum(float(np.sum(one.above(at) ** 2)) for one in drives) for at in (delay, 0.0)
+    )
+    return delay if remains < _REMAINS * all_of_it else 0.0
+
+
+def _delay(drive: _DrivePoint) -> float:
+    positive = drive.frequency > 0.0
+    try:
+        return delay_between_channels(Frf(drive.frequency[positive], drive.values[positive]))
+    except MeasurementError:
+        return 0.0
+
+
+def _sentence(axis: str, drives: Sequence[_DrivePoint], delay: float) -> str:
+    lines = np.concatenate([one.lines() for one in drives])
+    where = f"between {lines.min():.0f} and {lines.max():.0f} Hz"
+    about = (
+        f"the imaginary part of the FRFs in {axis} is above zero {where}, where a passive drive "
+        "point takes up power"
+    )
+    if delay:
+        leads = "lags" if delay > 0.0 else "leads"
+        return (
+            f"{about}: the response {leads} the force by {abs(delay) * 1e6:.1f} us; this was "
+            "taken off"
+        )
+    return f"{about}, and no delay accounts for it: were force and response at the same point?"
+
+
+def _without(run: Run, delay: float) -> Run:
+    if not delay:
+        return run
+    values = run.signals["real"] + 1j * run.signals["imag"]
+    turned = _advanced(values, run.signals["frequency"], delay)
+    return replace(run, signals={**run.signals, "real": turned.real, "imag": turned.imag})
+
+
+def _advanced(
+    values: NDArray[np.complex128], frequency: NDArray[np.float64], delay: float
+) -> NDArray[np.complex128]:
+    return values * np.exp(2j * np.pi * frequency * delay)
+
+
+def _averaged(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    count = min(_LINES, values.size)
+    return np.convolve(values, np.full(count, 1.0 / count), mode="valid")
