@@ -15,6 +15,7 @@ import os
 import shutil
 import struct
 import time
+import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -35,8 +36,8 @@ _MOST_BYTES, _SHARE_OF_DISK = 1 << 30, 0.25
 #: files of a search that nobody went on with are kept this long, s
 _KEEP_OTHERS = 30 * 86400.0
 #: marks a record; it is followed by key, checksum and size of the content
-_MARK = b"ka1\n"
-_HEADER = struct.Struct("<4s16s16sQ")
+_MARK = b"ka2\n"
+_HEADER = struct.Struct("<4s16sIQ")
 
 
 class _Place(NamedTuple):
@@ -45,7 +46,7 @@ class _Place(NamedTuple):
     path: Path
     offset: int
     size: int
-    checksum: bytes
+    checksum: int
 
 
 class KeptArrays:
@@ -154,13 +155,16 @@ class KeptArrays:
                 content = stream.read(place.size)
         except OSError:
             return None  # another run has written its results and deleted the file
-        return _arrays_of(content) if _digest(content) == place.checksum else None
+        return _arrays_of(content) if zlib.crc32(content) == place.checksum else None
 
     def _write(self, key: bytes, arrays: Arrays) -> None:
         if self.path is None:
             return
+        if sum(one.nbytes for one in arrays.values()) > self._left:
+            return
         content = _bytes_of(arrays)
-        record = _HEADER.pack(_MARK, key, _digest(content), len(content)) + content
+        checksum = zlib.crc32(content)
+        record = _HEADER.pack(_MARK, key, checksum, len(content)) + content
         with self._lock:
             if len(record) > self._left:
                 return
@@ -173,7 +177,7 @@ class KeptArrays:
                 words = f"predictions cannot be kept: {error.strerror}; those that are there stay"
                 raise OSError(error.errno, words, str(self.path)) from None
             self._left -= len(record)
-            self._places[key] = _Place(self._own, at, len(content), _digest(content))
+            self._places[key] = _Place(self._own, at, len(content), checksum)
 
     def _begun(self) -> Path:
         """File of this run, which nobody else writes to."""
