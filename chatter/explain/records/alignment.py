@@ -13,6 +13,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -68,14 +69,14 @@ class Recorded:
         return max(int(math.pi * self.sampling / self.speed), 1)
 
     @cached_property
-    def _folding(self) -> tuple[Complex, Complex]:
-        """Shares (M - K, K) of harmonics above the band, and of their conjugates, within it.
+    def _spectrum_of_means(self) -> Complex:
+        """Conjugate spectrum of the mean products of two harmonics, which depend on their distance.
 
-        Mean products of two harmonics over the usable samples are those of their difference.
+        As many points as keep the ends of a correlation over all harmonics apart.
         """
-        high, low = self.orders[self.in_band :, None], self.orders[: self.in_band]
-        mean = self._means(self.orders.size + self.in_band + 1)
-        return mean[high - low], np.conj(mean[high + low])
+        count = self.orders.size + self.in_band + 1
+        points = scipy.fft.next_fast_len(count + 2 * self.in_band + 1)
+        return np.conj(scipy.fft.fft(np.conj(self._means(count)), points))
 
     def _means(self, count: int) -> Complex:
         """Means (count,) of the harmonics of order 0 on over the usable samples."""
@@ -90,10 +91,26 @@ class Recorded:
         return found
 
     def folded(self, harmonics: Complex) -> Complex:
-        """Harmonics (c, K) that a record shows of a signal of harmonics (c, M)."""
-        direct, mirrored = self._folding
-        above = harmonics[:, self.in_band :]
-        return harmonics[:, : self.in_band] + above @ direct + np.conj(above) @ mirrored
+        """Harmonics (c, K) that a record shows of a signal of harmonics (c, M).
+
+        Those above the band and their conjugates have shares in it by the mean products over the
+        usable samples, a correlation.
+        """
+        band, means = self.in_band, self._spectrum_of_means
+        above = np.zeros((len(harmonics), means.size), dtype=np.complex128)
+        above[:, band + 1 : self.orders.size + 1] = harmonics[:, band:]
+        shares = scipy.fft.ifft(scipy.fft.fft(above) * means)
+        direct, mirrored = shares[:, 1 : band + 1], shares[:, : -band - 1 : -1]
+        return harmonics[:, :band] + direct + np.conj(mirrored)
+
+    @cached_property
+    def scan(self) -> tuple[Array, Complex]:
+        """Angles (a,) at which the record may begin, rad, and waves (a, K) turned back by them."""
+        share = np.arange(_SCANNED) / _SCANNED
+        angles = share * 2.0 * math.pi
+        if self.expected is not None:
+            angles = self.expected + self.pitch * (share - 0.5)
+        return angles, np.exp(-1j * np.outer(angles, self.orders[: self.in_band]))
 
     @cached_property
     def middle(self) -> Array:
@@ -241,11 +258,6 @@ def _step_from(scaled: Complex, recorded: Recorded, at: _Laid, delay: float) -> 
 
 def _scanned(scaled: Complex, recorded: Recorded) -> float:
     """Angle in the middle of the record at which scaled harmonics (c, M) fit best."""
-    orders = recorded.orders[: recorded.in_band]
-    product = np.sum(np.conj(scaled[:, : orders.size]) * recorded.content, axis=0)
-    angles = np.arange(_SCANNED) / _SCANNED * 2.0 * math.pi
-    if recorded.expected is not None:
-        span = recorded.pitch * (np.arange(_SCANNED) / _SCANNED - 0.5)
-        angles = recorded.expected + span
-    fits = np.real(np.exp(-1j * np.outer(angles, orders)) @ product)
-    return float(angles[int(np.argmax(fits))])
+    product = np.sum(np.conj(scaled[:, : recorded.in_band]) * recorded.content, axis=0)
+    angles, waves = recorded.scan
+    return float(angles[int(np.argmax(np.real(waves @ product)))])
