@@ -18,6 +18,16 @@ errors            one clear message and an exit code for every error
 """
 
 import os
+import signal
+import threading
+
+# Ctrl-C while the program is imported ends it without a word: there is nothing to tell yet
+_HANDLER = signal.getsignal(signal.SIGINT)
+_IS_OURS = (
+    threading.current_thread() is threading.main_thread() and _HANDLER is signal.default_int_handler
+)
+if _IS_OURS:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 # matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -30,6 +40,9 @@ from chatter.cli.garbage import end_without_collection, start_without_collection
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
 from chatter.cli.quick_pictures import leave_documentation_out
 from chatter.cli.start_up import START_UP
+
+if _IS_OURS:
+    signal.signal(signal.SIGINT, _HANDLER)
 
 COMMANDS = (
     "new",
