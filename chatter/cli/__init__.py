@@ -75,6 +75,10 @@ COMMANDS = (
 )
 
 
+#: exit codes: typer's for Ctrl-C, and that of a failed run (see errors)
+_INTERRUPTED, _RUN_FAILED = 130, 1
+
+
 class _Group(CommandGroup):
     """Group of the commands of this list."""
 
@@ -106,5 +110,15 @@ def main() -> None:
     start_without_collection()
     try:
         program()
+    except SystemExit as ended:
+        # an interruption outside of any command, which no command could report
+        if ended.code == _INTERRUPTED:
+            typer.echo("chatter: interrupted", err=True)
+            ended.code = _RUN_FAILED
+        raise
     finally:
+        START_UP.close()
         end_without_collection()
+        # Python ends a process by the signal where code made from a string was interrupted, as
+        # classes are while they are imported, unless such code has run since
+        eval("None")

@@ -9,6 +9,7 @@ import time
 #: s from the start of the program to the word
 _SAID_AFTER = 1.5
 _LOOKED_EVERY = 0.1
+_PRINTED_WITHIN = 2.0
 _IMPORT = "<frozen importlib._bootstrap>"
 
 
@@ -23,11 +24,13 @@ class StartUp:
         #: time of the last word, on the clock of `time.monotonic`; None after the first work began
         self._last_word: float | None = None
         self._over = threading.Event()
+        self._watching: threading.Thread | None = None
 
     def begin(self) -> None:
         """Begin to watch, once in a process."""
         self._last_word = time.monotonic()
-        threading.Thread(target=self._watch, daemon=True).start()
+        self._watching = threading.Thread(target=self._watch, daemon=True)
+        self._watching.start()
 
     def end(self) -> float:
         """End with the first work; returns how long nothing has been said before it, s."""
@@ -35,6 +38,12 @@ class StartUp:
         self._last_word = None
         self._over.set()
         return silent
+
+    def close(self) -> None:
+        """End before the process does: Python aborts where a thread is printing at its end."""
+        self._over.set()
+        if self._watching is not None:
+            self._watching.join(_PRINTED_WITHIN)
 
     def _watch(self) -> None:
         if self._over.wait(_SAID_AFTER):

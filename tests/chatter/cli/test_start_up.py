@@ -41,3 +41,20 @@ def test_a_question_that_waits_is_no_silence(capsys, monkeypatch):
     time.sleep(0.3)
     assert of_program.end() > 0.2
     assert capsys.readouterr().err == ""
+
+
+def test_a_word_that_is_being_said_ends_before_the_program(monkeypatch):
+    monkeypatch.setattr(start_up, "_SAID_AFTER", 0.01)
+    monkeypatch.setattr(start_up, "is_importing", lambda thread: True)
+    said = []
+
+    def slowly(text):
+        time.sleep(0.3)
+        said.append(text)
+
+    monkeypatch.setattr("chatter.report.console.print_message", slowly)
+    of_program = StartUp()
+    of_program.begin()
+    time.sleep(0.1)
+    of_program.close()
+    assert said == ["loading the program ..."]
