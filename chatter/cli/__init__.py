@@ -119,6 +119,3 @@ def main() -> None:
     finally:
         START_UP.close()
         end_without_collection()
-        # Python ends a process by the signal where code made from a string was interrupted, as
-        # classes are while they are imported, unless such code has run since
-        eval("None")
