@@ -72,10 +72,18 @@ class _Deferring:
         """Handle the signal in a frame."""
         if not _within_compiled_code(frame):
             return self._handler(number, frame)
-        again = threading.Timer(_LATER, signal.raise_signal, [number])
+        again = threading.Timer(_LATER, _interrupt_main_thread, [number])
         again.daemon = True
         again.start()
         return None
+
+
+def _interrupt_main_thread(number: int) -> None:
+    """Send a signal so that the main thread handles it at once, also while it waits."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident, number)
+    else:
+        signal.raise_signal(number)
 
 
 def _within_compiled_code(frame: FrameType | None) -> bool:

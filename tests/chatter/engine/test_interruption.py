@@ -30,22 +30,24 @@ def work(count):
     return Pair(np.full(2, total), np.ones(3)), Pair(np.ones(1), np.ones(2))
 
 work.compile((types.int64,))
-caught = 0
+caught, longest = 0, 0.0
 for _ in range(10):
+    begun = time.monotonic()
     threading.Timer(0.02, signal.raise_signal, [signal.SIGINT]).start()
     try:
         work(5_000_000)
-        time.sleep(5.0)
+        time.sleep(10.0)
     except KeyboardInterrupt:
         caught += 1
-print(caught)
+        longest = max(longest, time.monotonic() - begun)
+print(caught, longest < 8.0)
 """
 
 
 def test_ctrl_c_in_compiled_code_is_a_keyboard_interrupt():
     line = [sys.executable, "-c", PROGRAM]
     ended = subprocess.run(line, capture_output=True, text=True, timeout=120.0, check=False)
-    assert (ended.returncode, ended.stdout.strip()) == (0, "10"), ended.stderr
+    assert (ended.returncode, ended.stdout.strip()) == (0, "10 True"), ended.stderr
 
 
 @pytest.fixture
