@@ -75,8 +75,8 @@ COMMANDS = (
 )
 
 
-#: exit codes: typer's for Ctrl-C, and that of a failed run (see errors)
-_INTERRUPTED, _RUN_FAILED = 130, 1
+#: exit code of typer for Ctrl-C
+_INTERRUPTED = 130
 
 
 class _Group(CommandGroup):
@@ -113,8 +113,10 @@ def main() -> None:
     except SystemExit as ended:
         # an interruption outside of any command, which no command could report
         if ended.code == _INTERRUPTED:
+            from chatter.cli.errors import EXIT_RUN_FAILED
+
             typer.echo("chatter: interrupted", err=True)
-            ended.code = _RUN_FAILED
+            ended.code = EXIT_RUN_FAILED
         raise
     finally:
         START_UP.close()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from chatter.description.assignments import parse_assignments
-from chatter.description.bare_speeds import refuse_bare_speed_assignments
+from chatter.description.bare_numbers import refuse_bare_assignments
 from chatter.description.case import MACHINE_PATH, Case, load
 from chatter.description.errors import InputError
 from chatter.description.material_words import coefficients_in_words, notes_on_material
@@ -93,7 +93,7 @@ def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
 def patched(described: Described, assignments: list[str] | None) -> Described:
     """Apply the assignments of the command line to a description that was read."""
     values = parse_assignments(assignments or [])
-    refuse_bare_speed_assignments(type(described), values)
+    refuse_bare_assignments(type(described), values)
     patched = described.patch(values) if values else described
     report = document()
     if report is not None:

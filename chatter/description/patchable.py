@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import tomlkit
 from pydantic import PrivateAttr, ValidationError
 
-from chatter.description.bare_speeds import give_speeds_their_unit, refuse_bare_speeds
+from chatter.description.bare_numbers import give_bare_numbers_their_unit, refuse_bare_numbers
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
@@ -174,7 +174,7 @@ class Description(Section):
         path = Path(path)
         text = read_text(path, cls.NOUN)
         document = parse_document(text, str(path), cls.NOUN)
-        refuse_bare_speeds(cls, document.unwrap(), str(path))
+        refuse_bare_numbers(cls, document.unwrap(), str(path))
         return cls._of_document(document, str(path), path.parent, is_foreign=not was_written(text))
 
     @classmethod
@@ -195,7 +195,7 @@ class Description(Section):
                 set_value(document, steps, plain(value, steps, cls.NOUN), cls.LAYOUT)
             except InputError as error:
                 raise InputError([f"{path}: {text}" for text in error.messages]) from None
-        refuse_bare_speeds(cls, document.unwrap(), str(path))
+        refuse_bare_numbers(cls, document.unwrap(), str(path))
         return cls._of_document(document, str(path), path.parent, is_foreign=True)
 
     @classmethod
@@ -209,7 +209,7 @@ class Description(Section):
         """
         name = name or cls.NOUN
         document = parse_document(text, name)
-        refuse_bare_speeds(cls, document.unwrap(), name)
+        refuse_bare_numbers(cls, document.unwrap(), name)
         return cls._of_document(document, name, Path(folder))
 
     @classmethod
@@ -365,13 +365,13 @@ class Description(Section):
         """Document with all that was set in it."""
         if self._document is None:
             content = copied(self._plain())
-            give_speeds_their_unit(type(self), content)
+            give_bare_numbers_their_unit(type(self), content)
             return tomlkit.item(content)
         # only what is written needs it, so that patches do not carry its comments about
         document = copy.deepcopy(self._document)
         for steps, value in self._edits:
             set_value(document, steps, copied(value), self.LAYOUT)
-        give_speeds_their_unit(type(self), document)
+        give_bare_numbers_their_unit(type(self), document)
         return document
 
     @classmethod

@@ -26,40 +26,32 @@ def defer_interruptions() -> None:
 
     Only the main thread receives Ctrl-C; what ignores it, or has no handler of Python, stays.
     """
-    before = _replaceable()
-    if before is not None:
-        signal.signal(signal.SIGINT, _Deferring(before))
+    is_new = _deferred() is not None
     # a notebook sets its own handler before every cell
     shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
-    if shell is not None and before is not None:
-        shell.events.register("pre_run_cell", _before_cell)
+    if shell is not None and is_new:
+        shell.events.register("pre_run_cell", _deferred)
 
 
 @contextmanager
 def interruptions_deferred() -> Iterator[None]:
     """Hold Ctrl-C back while compiled code hands results over, whoever set its handler since."""
-    before = _replaceable()
-    if before is None:
-        yield
-        return
-    signal.signal(signal.SIGINT, _Deferring(before))
+    before = _deferred()
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        if before is not None:
+            signal.signal(signal.SIGINT, before)
 
 
-def _before_cell(*_: object) -> None:
-    before = _replaceable()
-    if before is not None:
-        signal.signal(signal.SIGINT, _Deferring(before))
-
-
-def _replaceable() -> Callable[..., Any] | None:
-    """Handler of Ctrl-C that does not look what it interrupts."""
+def _deferred(*_: object) -> Callable[..., Any] | None:
+    """Set the handler, and return the one before; None where that is to stay."""
     before = signal.getsignal(signal.SIGINT)
     main = threading.current_thread() is threading.main_thread()
-    return before if main and callable(before) and not isinstance(before, _Deferring) else None
+    if not main or not callable(before) or isinstance(before, _Deferring):
+        return None
+    signal.signal(signal.SIGINT, _Deferring(before))
+    return before
 
 
 class _Deferring:

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.simulation.result import SimulationResult
 from chatter.stability.forced_vibration import neglected_in_steady_cut
-from chatter.stability.model import milling_model
-from chatter.stability.neglected_effects import CHATTER, STABLE, NeglectedEffect
+from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.neglected_effects import CHATTER, EDGE_FORCES, STABLE, NeglectedEffect
 from chatter.stability.registry import chosen_method, fixed_steps, with_multiplier
 from chatter.stability.resting_friction import neglected_resting_friction
+from chatter.stability.stability_method import StabilityMethod
 from chatter.stability.steady_flank import about_steady_motion
+
+#: why verdicts may differ near a limit; by how much edge forces raise one: docs/methods.md
+_DURATION = "near the limit the duration of the run may decide (simulation.revolutions)"
+_HIGHER = ", and edge forces that set in at a chip of zero may raise the limit by some percent"
 
 
 @dataclass(frozen=True)
@@ -51,11 +57,16 @@ class LinearVerdict:
             for effect in self.neglected
             if (effect.lowest < 1.0 if lower else effect.highest > 1.0)
         )
-        why = reasons or (
-            "near the limit the duration of the run may decide (simulation.revolutions), and large "
-            "vibration goes on where small vibration would die out"
-        )
+        why = reasons or f"{_DURATION}{self._near_the_limit}"
         return f"the linear analysis says {self.verdict} ({radius}): {why}"
+
+    @property
+    def _near_the_limit(self) -> str:
+        """What may turn the verdict of a cut near the limit beside the duration."""
+        if self.verdict == STABLE:
+            return ", and large vibration goes on where small vibration dies out"
+        edges = any(effect.name == EDGE_FORCES for effect in self.neglected)
+        return _HIGHER if edges else ""
 
     def summary(self) -> dict:
         """Return the content of `linear_analysis` in summary.json."""
@@ -74,19 +85,46 @@ def linear_verdict(result: SimulationResult) -> LinearVerdict | None:
     None where the simulation has no verdict, where the engagement changes along the run, or where
     the linear analysis cannot take the case.
     """
-    case = result.case
-    moves = case.stock is not None or (case.simulation is not None and case.simulation.has_own_path)
-    if moves or result.detection is None or result.detection.verdict not in (STABLE, CHATTER):
+    if result.detection is None or result.detection.verdict not in (STABLE, CHATTER):
         return None
     try:
-        method = with_multiplier(chosen_method(case, "auto"))
-        model = milling_model(case)
-        method.check(model)
-        beside = about_steady_motion(model, *model.operating_point)
-        radius = abs(method.multiplier(beside, fixed_steps(case)).value)
-        neglected = neglected_resting_friction(model), neglected_in_steady_cut(model, method)
+        radius = linear_spectral_radius(result.case)
     except (InputError, RunError):
         return None
-    verdict = STABLE if radius < 1.0 else CHATTER
-    effects = (*neglected[0], *neglected[1])
-    return LinearVerdict(verdict, result.detection.verdict, method.name, radius, effects)
+    return verdict_of(result.case, radius, result.detection.verdict)
+
+
+def linear_spectral_radius(case: Case) -> float:
+    """Spectral radius of the cut of a case that is simulated.
+
+    InputError where its engagement changes along the run; InputError or RunError where the linear
+    analysis cannot take it.
+    """
+    moves = case.stock is not None or (case.simulation is not None and case.simulation.has_own_path)
+    if moves:
+        raise InputError(
+            f"{case.name}: the engagement changes along the run; the linear analysis takes one "
+            "that stays"
+        )
+    method, model = _analysis_of(case)
+    method.check(model)
+    beside = about_steady_motion(model, *model.operating_point)
+    return abs(method.multiplier(beside, fixed_steps(case)).value)
+
+
+def verdict_of(case: Case, spectral_radius: float, simulated: str) -> LinearVerdict:
+    """Linear verdict by the spectral radius of a cut, beside that of its simulation.
+
+    Without neglected effects where it cannot be said what the linear analysis leaves out.
+    """
+    method, model = _analysis_of(case)
+    try:
+        effects = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, method))
+    except (InputError, RunError):
+        effects = ()
+    verdict = STABLE if spectral_radius < 1.0 else CHATTER
+    return LinearVerdict(verdict, simulated, method.name, spectral_radius, effects)
+
+
+def _analysis_of(case: Case) -> tuple[StabilityMethod, MillingModel]:
+    return with_multiplier(chosen_method(case, "auto")), milling_model(case)

@@ -26,7 +26,7 @@ from chatter.studies.linear_limits import (
     LinearLimits,
     Simulated,
     linear_limits,
-    linear_spectral_radius,
+    spectral_radius_or_nan,
 )
 from chatter.studies.model import fingerprint
 from chatter.studies.result_cache import Execution, ResultCache
@@ -162,7 +162,7 @@ def bifurcation(
 def _record(path: str, modes: tuple[Mode, ...] | None, case: Case) -> dict[str, Any]:
     """Cut of a case as the result cache keeps it."""
     point = asdict(_point(case, path, modes))
-    point["spectral_radius"] = linear_spectral_radius(case)
+    point["spectral_radius"] = spectral_radius_or_nan(case)
     return {**point, "poincare_section": point["poincare_section"].tolist()}
 
 

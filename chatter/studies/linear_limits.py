@@ -12,18 +12,12 @@ from scipy.optimize import brentq
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.io.result_files import finite_or_none
-from chatter.stability.forced_vibration import neglected_in_steady_cut
-from chatter.stability.model import milling_model
-from chatter.stability.neglected_effects import CHATTER, EDGE_FORCES, STABLE
-from chatter.stability.registry import chosen_method, fixed_steps, with_multiplier
-from chatter.stability.resting_friction import neglected_resting_friction
-from chatter.stability.steady_flank import about_steady_motion
+from chatter.stability.beside_simulation import linear_spectral_radius, verdict_of
+from chatter.stability.neglected_effects import CHATTER, STABLE
+from chatter.stability.registry import chosen_method, with_multiplier
 
 #: of a limit, relative to itself and to the way between the cuts on either side
 _TOLERANCE = 1e-6
-#: why verdicts may differ near a limit; by how much edge forces raise one: docs/methods.md
-_DURATION = "near the limit the duration of the run may decide (simulation.revolutions)"
-_HIGHER = ", and edge forces that set in at a chip of zero may raise the limit by some percent"
 
 
 class Simulated(NamedTuple):
@@ -81,10 +75,10 @@ class LinearLimits(NamedTuple):
 NO_LIMITS = LinearLimits("", (), (), ())
 
 
-def linear_spectral_radius(case: Case) -> float:
+def spectral_radius_or_nan(case: Case) -> float:
     """Spectral radius of the cut of a case; nan where the linear analysis does not take it."""
     try:
-        return _radius(case)
+        return linear_spectral_radius(case)
     except (InputError, RunError):
         return math.nan
 
@@ -127,24 +121,10 @@ def linear_limits(case: Case, path: str, cuts: Sequence[Simulated]) -> LinearLim
     return LinearLimits(method, tuple(limits), tuple(unstable), _disagreements(case, path, cuts))
 
 
-def _radius(case: Case) -> float:
-    moves = case.stock is not None or (case.simulation is not None and case.simulation.has_own_path)
-    if moves:
-        raise InputError(
-            f"{case.name}: the engagement changes along the run; the linear analysis takes one "
-            "that stays"
-        )
-    method = with_multiplier(chosen_method(case, "auto"))
-    model = milling_model(case)
-    method.check(model)
-    beside = about_steady_motion(model, *model.operating_point)
-    return abs(method.multiplier(beside, fixed_steps(case)).value)
-
-
 def _why_not(case: Case) -> str:
     """Why the linear analysis takes none of the cuts."""
     try:
-        _radius(case)
+        linear_spectral_radius(case)
     except (InputError, RunError) as error:
         return str(error).removeprefix(f"{case.name}: ")
     return "it takes none of the values of the range"
@@ -156,7 +136,7 @@ def _limit_between(case: Case, path: str, before: Simulated, after: Simulated) -
     def growth_rate(value: float) -> float:
         if value in ends:
             return ends[value]
-        return _logarithm(_radius(case.patch({path: value})))
+        return _logarithm(linear_spectral_radius(case.patch({path: value})))
 
     ends = {cut.value: _logarithm(cut.spectral_radius) for cut in (before, after)}
     near = _TOLERANCE * (after.value - before.value)
@@ -191,18 +171,4 @@ def _opposite(cut: Simulated) -> str:
 
 def _reason(case: Case, cut: Simulated) -> str:
     """Sentence of the linear analysis on a cut of which it says otherwise."""
-    method = with_multiplier(chosen_method(case, "auto"))
-    model = milling_model(case)
-    try:
-        neglected = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, method))
-    except (InputError, RunError):
-        neglected = ()
-    if cut.spectral_radius < 1.0:
-        verdict, why = STABLE, [one.because for one in neglected if one.lowest < 1.0]
-        why = why or [f"{_DURATION}, and large vibration goes on where small vibration dies out"]
-    else:
-        verdict, why = CHATTER, [one.because for one in neglected if one.highest > 1.0]
-        edge = any(one.name == EDGE_FORCES for one in neglected)
-        why = why or [f"{_DURATION}{_HIGHER if edge else ''}"]
-    radius = f"spectral radius {cut.spectral_radius:.4g}"
-    return f"the linear analysis says {verdict} ({radius}): {'; '.join(why)}"
+    return verdict_of(case, cut.spectral_radius, cut.verdict).sentence()

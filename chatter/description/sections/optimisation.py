@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from chatter.description.bare_speeds import LEAST_POWER
+from chatter.description.bare_numbers import LEAST_POWER
 from chatter.description.quantities import PositiveLength, quantity, whole_number
 from chatter.description.section import Section
 from chatter.description.sections.cut import LARGEST_FEED

@@ -25,7 +25,7 @@ from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.same_case import OfSameCase
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.response_delay import without_delay
-from chatter.explain.records.response_scatter import scatter
+from chatter.explain.records.response_scatter import repetitions_of, scatter
 from chatter.explain.residuals.over_lines import by_condition, over_lines
 from dynamics.modal.modes import receptance_matrix
 
@@ -81,13 +81,9 @@ class FrequencyResponse(Kind):
         runs = []
         for run in measurement.runs:
             _refuse_unknown_place(measurement.case, run)
-            alike = [
-                other
-                for other in measurement.runs
-                if (other.condition, other.direction) == (run.condition, run.direction)
-                and other.signals["real"].size == run.signals["real"].size
-            ]
-            runs.append(replace(run, record=FrfRecord(scatter(run, alike))))
+            runs.append(
+                replace(run, record=FrfRecord(scatter(run, repetitions_of(run, measurement.runs))))
+            )
         return measurement.with_runs(runs)
 
     def predict(self, case: Case, run: Run) -> Signals:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.explain.data_checks.finding import NOTE, SignalFinding
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.records.response_scatter import scatter
+from chatter.explain.records.response_scatter import repetitions_of, scatter
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.fit import delay_between_channels
 
@@ -77,14 +77,8 @@ def without_delay(measurement: Measurement) -> tuple[Measurement, list[SignalFin
 
 
 def _drive_point(run: Run, read: Sequence[Run]) -> _DrivePoint:
-    repetitions = [
-        one
-        for one in read
-        if (one.condition, one.direction) == (run.condition, run.direction)
-        and one.signals["real"].size == run.signals["real"].size
-    ]
     values = run.signals["real"] + 1j * run.signals["imag"]
-    return _DrivePoint(run.signals["frequency"], values, scatter(run, repetitions))
+    return _DrivePoint(run.signals["frequency"], values, scatter(run, repetitions_of(run, read)))
 
 
 def _common_delay(drives: Sequence[_DrivePoint]) -> float:

@@ -13,6 +13,16 @@ Array = NDArray[np.float64]
 _SMOOTHED = 31
 
 
+def repetitions_of(run: Run, runs: Sequence[Run]) -> list[Run]:
+    """Runs of the same condition, direction and lines, the run itself among them."""
+    return [
+        one
+        for one in runs
+        if (one.condition, one.direction) == (run.condition, run.direction)
+        and one.signals["real"].size == run.signals["real"].size
+    ]
+
+
 def scatter(run: Run, repetitions: Sequence[Run]) -> Array:
     """Standard deviation of real and imaginary part at every line, from repetitions."""
     values = np.array([one.signals["real"] + 1j * one.signals["imag"] for one in repetitions])

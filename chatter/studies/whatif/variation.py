@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from chatter.description.assignments import parse_assignments
-from chatter.description.bare_speeds import refuse_bare_speed_assignments
+from chatter.description.bare_numbers import refuse_bare_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
@@ -99,7 +99,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     if whole:
         parts = _whole_numbers(path, *(int(one) if one else None for one in whole.groups()))
     values = {part: parse_assignments([f"{path}={part}"])[path] for part in parts}
-    _refuse_bare_speeds(path, values.values())
+    _refuse_bare_numbers(path, values.values())
     _refuse_mixed(path, values, kind)
     return _listed(path, list(values.items()), kind)
 
@@ -130,10 +130,10 @@ def _split(text: str) -> list[str]:
     return [*parts, part.strip()] if text.strip() else []
 
 
-def _refuse_bare_speeds(path: str, values: Iterable[Any]) -> None:
+def _refuse_bare_numbers(path: str, values: Iterable[Any]) -> None:
     """Refuse 14000, which may be meant in rpm or in rad/s."""
     for value in values:
-        refuse_bare_speed_assignments(Case, {path: value}, "--vary")
+        refuse_bare_assignments(Case, {path: value}, "--vary")
 
 
 def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | None) -> None:
@@ -206,7 +206,7 @@ def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Vari
     if re.fullmatch(NUMBER, low) and unit:
         low = f"{low} {unit}"
     ends = [end if not re.fullmatch(NUMBER, end) else float(end) for end in (low, high)]
-    _refuse_bare_speeds(path, ends)
+    _refuse_bare_numbers(path, ends)
     pair = _listed(path, list(zip((low, high), ends, strict=True)), kind)
     first, last = (value.number for value in pair.values)
     values = tuple(

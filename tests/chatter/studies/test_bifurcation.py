@@ -9,7 +9,7 @@ import pytest
 
 import chatter
 from chatter import Case, InputError
-from chatter.studies.linear_limits import Simulated, linear_limits, linear_spectral_radius
+from chatter.studies.linear_limits import Simulated, linear_limits, spectral_radius_or_nan
 from tests.cases import tool_of_922_hertz
 from tests.command_line import chatter_command
 
@@ -109,7 +109,7 @@ def test_wrong_values(path, values, words):
 
 def cuts_at(case, path, values, verdicts):
     """Cuts with verdicts as if simulated, and their spectral radii by the linear analysis."""
-    radii = [linear_spectral_radius(case.patch({path: value})) for value in values]
+    radii = [spectral_radius_or_nan(case.patch({path: value})) for value in values]
     return [Simulated(*cut) for cut in zip(values, verdicts, radii, strict=True)]
 
 
@@ -167,7 +167,7 @@ def test_edge_forces_are_the_reason_where_they_may_be():
 def test_no_linear_analysis_where_the_engagement_changes():
     path = [["0 mm", "0 mm"], ["9 mm", "0 mm"]]
     case = cut_of(20000, "3 mm").patch({"simulation.path": path, "simulation.chip": "dexel"})
-    assert math.isnan(linear_spectral_radius(case))
+    assert math.isnan(spectral_radius_or_nan(case))
     found = linear_limits(case, "cut.axial_depth", [Simulated(1e-3, "stable", math.nan)])
     assert found.limits == found.unstable == found.disagreements == ()
     assert "engagement changes along the run" in found.reason

@@ -43,27 +43,27 @@ _OF_KEYS: dict[tuple[Step, ...], _Units] = {
 }
 
 
-def refuse_bare_speeds(kind: type[BaseModel], data: Any, name: str) -> None:
+def refuse_bare_numbers(kind: type[BaseModel], data: Any, name: str) -> None:
     """Raise InputError where nested tables of a file give a speed of a cut as a bare number."""
     problems = [
         f"{name}: {join_path(steps)}: {formatted(value)} has no unit; "
         f"{units.wanted(formatted(value))}"
-        for steps, value, units in _bare_speeds(kind, data)
+        for steps, value, units in _bare_numbers(kind, data)
     ]
     if problems:
         raise InputError(problems)
 
 
-def give_speeds_their_unit(kind: type[BaseModel], document: Any) -> None:
+def give_bare_numbers_their_unit(kind: type[BaseModel], document: Any) -> None:
     """Write bare speeds of a cut in a document, which came from Python, with their unit."""
-    for steps, value, units in list(_bare_speeds(kind, document)):
+    for steps, value, units in list(_bare_numbers(kind, document)):
         table = document
         for step in steps[:-1]:
             table = table[step]
         table[steps[-1]] = f"{float(value)!r} {units.si}"
 
 
-def refuse_bare_speed_assignments(
+def refuse_bare_assignments(
     kind: type[BaseModel], values: Mapping[str, Any], option: str = "--set"
 ) -> None:
     """Raise InputError where an assignment of the command line gives a bare speed of a cut."""
@@ -73,7 +73,7 @@ def refuse_bare_speed_assignments(
         except InputError:
             # told by the patch itself
             continue
-        refuse_bare_speeds(kind, _nested(steps, value), option)
+        refuse_bare_numbers(kind, _nested(steps, value), option)
 
 
 def _nested(steps: tuple[Step, ...], value: Any) -> Any:
@@ -93,7 +93,7 @@ def _numbers(item: Any, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, .
         yield steps, item
 
 
-def _bare_speeds(
+def _bare_numbers(
     kind: type[BaseModel], data: Any
 ) -> Iterator[tuple[tuple[Step, ...], float, _Units]]:
     """Path, value and possible units of each bare value that is hardly in SI, but zero."""
