@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.measured_frf import is_passive
 from chatter.explain.data_checks.finding import NOTE, SignalFinding
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.response_scatter import repetitions_of, scatter
@@ -51,6 +52,12 @@ class _DrivePoint:
         turned = np.sum(np.maximum(imaginary, 0.0)) > _SIGN_TURNED * np.sum(np.abs(imaginary))
         return bool(np.any(self.above()) and not turned)
 
+    @property
+    def frf(self) -> Frf:
+        """Lines above 0 Hz."""
+        positive = self.frequency > 0.0
+        return Frf(self.frequency[positive], self.values[positive])
+
     def lines(self) -> NDArray[np.float64]:
         """Frequencies, Hz, at which power flows out."""
         return _averaged(self.frequency)[self.above() > 0.0]
@@ -71,6 +78,9 @@ def without_delay(measurement: Measurement) -> tuple[Measurement, list[SignalFin
         if 2 * len(broken) <= len(drives):
             continue
         delay = _common_delay(broken)
+        if not delay and all(is_passive(one.frf) for one in broken):
+            # between resonances of little damping a small error of phase is enough
+            continue
         notes.append(SignalFinding(NOTE, "", "real, imag", _sentence(axis, broken, delay)))
         runs = [_without(run, delay) if run in read else run for run in runs]
     return measurement.with_runs(runs), notes
@@ -92,9 +102,8 @@ def _common_delay(drives: Sequence[_DrivePoint]) -> float:
 
 
 def _delay(drive: _DrivePoint) -> float:
-    positive = drive.frequency > 0.0
     try:
-        return delay_between_channels(Frf(drive.frequency[positive], drive.values[positive]))
+        return delay_between_channels(drive.frf)
     except MeasurementError:
         return 0.0
 
