@@ -52,7 +52,7 @@ class FrfOptions:
         str | None, typer.Option("--level", help='Peak of the excitation, "100 N".')
     ] = None
     band: Annotated[
-        str | None, typer.Option("--band", help='Lowest and highest frequency, "5 Hz, 500 Hz".')
+        str | None, typer.Option("--band", help='Lowest and highest frequency, "5 Hz..500 Hz".')
     ] = None
     moving: Annotated[
         Pairs, typer.Option("--moving", help='Axis in motion, "Y=420 mm/min"; repeatable.')
@@ -86,7 +86,7 @@ def frf(options: FrfOptions) -> None:
         "read": options.read,
         "by": options.by,
         "level": options.level,
-        "band": None if band is None else [part.strip() for part in band.split(",")],
+        "band": None if band is None else _ends(band),
         "moving": options.moving,
         "position": options.position,
         "brake": options.brake,
@@ -99,7 +99,12 @@ def frf(options: FrfOptions) -> None:
     folder = output_folder(options.out, options.machine.stem)
     with progress_bar("time steps of the tests", run) as progress:
         result = frfs(file, sections, progress)
-    present(result, folder, json=options.json, words=_print_peaks)
+    present(result, folder, json=options.json, words=_print_peaks, notes=result.notes)
+
+
+def _ends(band: str) -> list[str]:
+    """Ends of a band, FROM..TO or separated by a comma."""
+    return [part.strip() for part in band.split(".." if ".." in band else ",")]
 
 
 def _print_peaks(result: FrfResult) -> None:

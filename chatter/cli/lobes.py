@@ -137,6 +137,8 @@ def _serve(description: Case, options: LobesOptions) -> None:
 
 
 def _print_diagram(diagram: StabilityDiagram) -> None:
+    from chatter.stability.neglected_effects import reasons_of
+
     summary = diagram.summary()
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     depth, margin = summary["margin"]["depth"], summary["margin"]["spindle_speed"]
@@ -149,6 +151,12 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         ]
         for pocket in summary["pockets"]
     ]
+    if rows and diagram.resting_friction < 1.0:
+        print_line(
+            "limits and pockets are those of frictions at rest as they vibrate "
+            "(structure.friction_amplitude); `chatter check` at a pocket says between which limits "
+            "they may be"
+        )
     if rows:
         print_table(
             f"pockets worth using ({depth:.0%} below the limit, {margin:.1%} off in speed)",
@@ -176,7 +184,8 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     )
     if not operating["certain"]:
         known = diagram.neglected_at_all_speeds if diagram.why_no_pocket else ()
-        reasons = [effect.because for effect in diagram.deciding if effect not in known]
+        left = [effect for effect in diagram.deciding if effect not in known]
+        reasons = reasons_of(left, stable=diagram.operating_is_stable)
         print_line("; ".join([*reasons, "`chatter simulate` decides"]))
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
@@ -191,11 +200,15 @@ def _stable_below(depth: float) -> str:
 
 def _taken_off(diagram: StabilityDiagram) -> str:
     """What is taken off the lowest limit, and why."""
-    return "".join(
+    told = [
         f"; less {one.share:.0%}: {one.name} that set in at a chip of zero"
         for one in diagram.neglected_at_all_speeds
         if not diagram.why_no_pocket
-    )
+    ]
+    if diagram.resting_friction < 1.0:
+        share = 1.0 - diagram.resting_friction
+        told.append(f"; less {share:.0%}: frictions of axes at rest, stuck or without them")
+    return "".join(told)
 
 
 def _millimetres(depth: float | None, max_depth: float) -> str:

@@ -34,6 +34,7 @@ def move(
             result = file_move(file, name, section, progress)
         written += result.save(folder / name if len(sections) > 1 else folder)
         summaries[name] = result.summary()
+        behind += [*file.questions_of_positions(section.position)]
         behind += [f"{name}: {text}" for text in result.left_behind()]
         interrupted = interrupted or result.interrupted
         if interrupted:

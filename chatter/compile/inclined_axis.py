@@ -121,6 +121,19 @@ def _widest(
     return float(cutter.radius_at(low))
 
 
+def hint_of_tilt(case: Case) -> str:
+    """Say that the tilt lifts the side of the tool that cuts, where it does; else nothing."""
+    tilt, side = case.cut.tilt, {"down": -1.0, "up": 1.0}.get(case.cut.mode, 0.0)
+    if not side * tilt < 0.0:
+        return ""
+    wall = "+y" if side > 0.0 else "-y"
+    return (
+        f'. With mode = "{case.cut.mode}" the tool cuts on its side at {wall}, which a tilt of '
+        f"{math.degrees(tilt):.4g} deg lifts: tilt it towards the work, by "
+        f"{math.degrees(-tilt):.4g} deg, or cut deeper"
+    )
+
+
 def refuse_inclined_axis(case: Case) -> None:
     """InputError where the tool axis is inclined, for what does not take it."""
     _ = case.uncut_band

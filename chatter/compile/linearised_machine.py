@@ -98,7 +98,11 @@ class LinearisedMachine:
 
     def with_stuck(self) -> LinearisedMachine:
         """The same machine with the resting frictions stuck, as under vanishing vibration."""
-        return replace(self, case=self.case.patch({"structure.friction_amplitude": 0.0}))
+        return self.with_amplitude(0.0)
+
+    def with_amplitude(self, amplitude: float) -> LinearisedMachine:
+        """The same machine with the resting frictions at vibration of an amplitude, m."""
+        return replace(self, case=self.case.patch({"structure.friction_amplitude": amplitude}))
 
     def without_resting(self) -> LinearisedMachine:
         """The same machine with nothing in place of the frictions that rest."""

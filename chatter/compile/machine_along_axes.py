@@ -73,13 +73,21 @@ def machine_along_axes(
     Raises
     ------
     InputError
-        If the machine makes no sense at one of the positions: a nut off its screw.
+        If an axis would leave its travel, or the machine makes no sense at one of the positions: a
+        nut off its screw.
     """
-    if count == 1:
-        return None
     start = {
         name: axis.position for name, axis in file.axis.items() if axis.travelling
     } | file.positions(positions or {})
+    file.refuse_travel(
+        {
+            axis: (start[axis] + low, start[axis] + high)
+            for axis, (low, high) in travelled.items()
+            if axis in start
+        }
+    )
+    if count == 1:
+        return None
 
     def at(offsets: Sequence[Mapping[str, float]]) -> tuple[Machine, ...]:
         everywhere = [start | {axis: start[axis] + x for axis, x in one.items()} for one in offsets]

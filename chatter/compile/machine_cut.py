@@ -102,7 +102,12 @@ def cut_on(
     tool, spindle, sense = _rows(case, file, machine, positions, name)
     travels = _travels(machine, tool, [one for one in machine.axes if one != name])
     feeds = travels.get("x", {})
-    notes = (*file.notes, *_notes_on_workpiece(file), *_notes_on_contact(case, file))
+    notes = (
+        *file.notes,
+        *file.questions_of_positions(case.structure.position or {}),
+        *_notes_on_workpiece(file),
+        *_notes_on_contact(case, file),
+    )
     return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels, notes)
 
 

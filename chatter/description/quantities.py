@@ -14,6 +14,9 @@ from chatter.description import units
 from chatter.description.formatting import formatted
 from chatter.description.magnitudes import is_plausible, words_of_range
 
+#: unit in which people state what a bare number states in SI, by dimension
+_MEANT = {"angle": "deg", "length": "mm", "number": "%", "pressure": "MPa"}
+
 #: what an editor can check: a number, perhaps a deviation, and a unit unless it is zero
 _TEXT_PATTERN = (
     rf"^\s*({units.NUMBER}(\s*(\+-|\+/-|±)\s*{units.NUMBER})?\s*[A-Za-z%°\u00b5\u03bc(1].*"
@@ -50,9 +53,21 @@ class QuantityField:
             if bound is not None and not holds:
                 raise ValueError(
                     f"{formatted(given)}{self._bare_unit(given)} is out of range; "
-                    f"it must be {words} {self._shown(bound)}"
+                    f"it must be {words} {self._shown(bound)}{self._meant(given)}"
                 )
         return value
+
+    def _meant(self, given: Any) -> str:
+        """Ask whether a bare number out of range was meant in the usual unit, where that fits."""
+        unit = _MEANT.get(self.dimension)
+        if unit is None or isinstance(given, (bool, str)) or not isinstance(given, (int, float)):
+            return ""
+        text = f"{given:g} {unit}"
+        try:
+            QuantityField.read(self, text)
+        except ValueError:
+            return ""
+        return f'; is "{text}" meant?'
 
     def matching(self, text: str) -> QuantityField:  # noqa: ARG002
         """Field for another value of the same dimension as a text."""
@@ -217,10 +232,17 @@ def list_reader(
     return read
 
 
+def _examples(field: QuantityField, count: int) -> list[str]:
+    """Quantities that rise, so that two of them are the ends of a range."""
+    number, _, unit = field.example.strip('"').partition(" ")
+    values = (f"{place * float(number):.4g} {unit}".rstrip() for place in range(1, count + 1))
+    return [f'"{value}"' if unit else value for value in values]
+
+
 def quantities(count: int, dimension: str, **bounds: float) -> Any:
     """Return the field type of so many quantities of one dimension; bounds as for `quantity`."""
     field = QuantityField(dimension, **bounds)
-    example = f"[{', '.join([field.example] * count)}]"
+    example = f"[{', '.join(_examples(field, count))}]"
     wanted = f"is given; {count} quantities are required, such as {example}"
     read = list_reader(field, wanted, count, count)
     description = f"{count} quantities, each {field.noun}"
@@ -249,12 +271,24 @@ Length = quantity("length", at_least=0.0, at_most=_LARGEST_LENGTH)
 PositiveLength = quantity("length", above=0.0, at_most=_LARGEST_LENGTH)
 
 
+def _written(given: Any) -> str:
+    """How a whole number is written that stands there as text or with a decimal point."""
+    try:
+        value = float(given)
+    except (TypeError, ValueError):
+        return ""
+    if isinstance(given, bool) or not value.is_integer():
+        return ""
+    how = "without quotes" if isinstance(given, str) else "without a decimal point"
+    return f" as it stands; write {value:.0f}, {how}"
+
+
 def whole_number(at_least: int, at_most: int, meaning: str) -> Any:
     """Return the field type of a whole number within limits."""
 
     def read(given: Any) -> int:
         if isinstance(given, bool) or not isinstance(given, int):
-            raise ValueError(f"{formatted(given)} is not a whole number")
+            raise ValueError(f"{formatted(given)} is not a whole number{_written(given)}")
         if not at_least <= given <= at_most:
             raise ValueError(
                 f"{formatted(given)} is out of range; {meaning} go from {at_least} to {at_most}"

@@ -1,6 +1,8 @@
 """The TOML document behind a case or machine: reading text, values for it, file names in it."""
 
+import codecs
 import os
+import re
 import sys
 from collections.abc import Mapping
 from datetime import date, time
@@ -17,6 +19,10 @@ from chatter.description.path import Step, join_path
 _LARGEST_FILE = 256 * 1024
 #: TOML's whole numbers have 64 bits
 _LARGEST_INTEGER = 2**63 - 1
+#: where a parser stumbled; text in quotes of word processors; a value with its unit and no quotes
+_LINE = re.compile(r"\bline (\d+)")
+_CURLY = re.compile("[\u201c-\u201f\u00ab\u2018\u2019]\\s*([^\u201c-\u201f\u00bb\u2018\u2019]*)")
+_UNQUOTED = re.compile(r"^[\w.\[\]-]+\s*=\s*([-+]?[\d.]+\s*[A-Za-z%\u00b0\u00b5\u03bc][^#\"]*)")
 #: what the parsers say -> what people say
 _PLAIN_WORDS = {
     "Cannot overwrite a value": "a key is given twice",
@@ -45,6 +51,11 @@ def read_text(path: Path, noun: str = "case") -> str:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
     except ValueError:
         raise InputError(f"{formatted(str(path))}: is not a file name") from None
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise InputError(
+            f"{path}: is text in UTF-16; {with_article(noun)} file is TOML text in UTF-8, an "
+            "encoding that editors offer when they save"
+        )
     if b"\0" in raw:
         raise InputError(f"{path}: is a binary file; {with_article(noun)} file is TOML text")
     if len(raw) > _LARGEST_FILE:
@@ -77,7 +88,8 @@ def parse_document(text: str, name: str, noun: str = "case") -> tomlkit.TOMLDocu
         if other := other_format(Path(name), text):
             required = f"{with_article(noun)} file is TOML text"
             raise InputError(f"{name}: {other}; {required}") from None
-        raise InputError(f"{name}: is no valid TOML: {_reason(error)}") from None
+        reason = f"{_reason(error)}{_about_line(str(error), text)}"
+        raise InputError(f"{name}: is no valid TOML: {reason}") from None
 
 
 def _reason(error: Exception) -> str:
@@ -87,6 +99,22 @@ def _reason(error: Exception) -> str:
     for words, plain in _PLAIN_WORDS.items():
         text = text.replace(words, plain)
     return text
+
+
+def _about_line(message: str, text: str) -> str:
+    """Line that a parser stumbled over, and what to write where a quantity lacks its quotes."""
+    number = _LINE.search(message)
+    lines = text.splitlines()
+    if number is None or not 1 <= int(number[1]) <= len(lines):
+        return ""
+    line = lines[int(number[1]) - 1].strip()
+    if curly := _CURLY.search(line):
+        hint = f'; straight quotes are required: "{printable(curly[1], 40)}"'
+    elif bare := _UNQUOTED.match(line):
+        hint = f'; a quantity stands in quotes: "{printable(bare[1].strip(), 40)}"'
+    else:
+        hint = ""
+    return f": {printable(line, 80)}{hint}"
 
 
 def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table, force_law, helix_angles
 from chatter.compile.empirical import force_factor
-from chatter.compile.inclined_axis import check_inclined_axis, is_inclined, tool_axis
+from chatter.compile.inclined_axis import check_inclined_axis, hint_of_tilt, is_inclined, tool_axis
 from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
@@ -280,6 +280,7 @@ def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
             raise InputError(
                 f"{case.name}: cut.{_stated(case)}: down to an axial depth of "
                 f"{case.cut.axial_depth * 1e3:g} mm no edge of the inclined tool reaches the work"
+                f"{hint_of_tilt(case)}"
             )
         return
     entry, leave = slice_engagement(case.uncut_band, slices.radius)

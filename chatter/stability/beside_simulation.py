@@ -9,15 +9,21 @@ from chatter.description.errors import InputError, RunError
 from chatter.simulation.result import SimulationResult
 from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.neglected_effects import CHATTER, EDGE_FORCES, STABLE, NeglectedEffect
+from chatter.stability.neglected_effects import (
+    CHATTER,
+    EDGE_FORCES,
+    STABLE,
+    NeglectedEffect,
+    reasons_of,
+)
 from chatter.stability.registry import chosen_method, fixed_steps, with_multiplier
 from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.stability.stability_method import StabilityMethod
 from chatter.stability.steady_flank import about_steady_motion
 
-#: why verdicts may differ near a limit; by how much edge forces raise one: docs/methods.md
+#: why verdicts may differ near a limit
 _DURATION = "near the limit the duration of the run may decide (simulation.revolutions)"
-_HIGHER = ", and edge forces that set in at a chip of zero may raise the limit by some percent"
+_LARGE = ", and large vibration goes on where small vibration dies out"
 
 
 @dataclass(frozen=True)
@@ -51,22 +57,13 @@ class LinearVerdict:
         radius = f"{self.method}, spectral radius {self.spectral_radius:.4g}"
         if self.agrees:
             return f"the linear analysis agrees ({radius})"
-        lower = self.verdict == STABLE
-        reasons = "; ".join(
-            effect.because
-            for effect in self.neglected
-            if (effect.lowest < 1.0 if lower else effect.highest > 1.0)
-        )
-        why = reasons or f"{_DURATION}{self._near_the_limit}"
+        stable = self.verdict == STABLE
+        reasons = reasons_of(self.neglected, stable=stable)
+        if not stable and all(effect.name == EDGE_FORCES for effect in self.neglected):
+            # a short run tells nothing of slow growth, whatever edge forces do
+            reasons = [*reasons, _DURATION]
+        why = "; ".join(reasons) or f"{_DURATION}{_LARGE if stable else ''}"
         return f"the linear analysis says {self.verdict} ({radius}): {why}"
-
-    @property
-    def _near_the_limit(self) -> str:
-        """What may turn the verdict of a cut near the limit beside the duration."""
-        if self.verdict == STABLE:
-            return ", and large vibration goes on where small vibration dies out"
-        edges = any(effect.name == EDGE_FORCES for effect in self.neglected)
-        return _HIGHER if edges else ""
 
     def summary(self) -> dict:
         """Return the content of `linear_analysis` in summary.json."""

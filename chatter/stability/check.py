@@ -36,8 +36,10 @@ from chatter.stability.neglected_effects import (
     STABLE,
     NeglectedEffect,
     deciding,
+    highest_factor,
     lowest_factor,
     notes_of,
+    reasons_of,
 )
 from chatter.stability.registry import (
     chosen_method,
@@ -80,6 +82,8 @@ class StabilityCheck(NotebookResult):
     notes : tuple of str
     neglected : tuple of NeglectedEffect
         What the linear limit leaves out in this cut, with bounds of the true limit.
+    radius_method : str
+        Name of the one that gave the spectral radius, and with it the verdict.
     """
 
     case: Case
@@ -91,6 +95,7 @@ class StabilityCheck(NotebookResult):
     zero_order_depth: float
     notes: tuple[str, ...] = ()
     neglected: tuple[NeglectedEffect, ...] = ()
+    radius_method: str = ""
 
     @property
     def spectral_radius(self) -> float:
@@ -174,7 +179,7 @@ class StabilityCheck(NotebookResult):
             point = f"{point}{self._chatter()}"
         if not deciding:
             return [f"{words}: {point}"]
-        reasons = "; ".join(effect.because for effect in deciding)
+        reasons = "; ".join(reasons_of(deciding, stable=self.stable))
         return [f"{words}: {point}", f"{reasons}{self._bound()}; `chatter simulate` decides"]
 
     def _chatter(self) -> str:
@@ -185,9 +190,14 @@ class StabilityCheck(NotebookResult):
         return f", {frequency:.0f} Hz ({_KINDS[self.bifurcation]})"
 
     def _bound(self) -> str:
-        """How low the limit of a cut that is called stable may lie, where a bound is known."""
+        """How far the limit next to the cut may lie from the linear one, where that is known."""
+        depth = self.case.cut.axial_depth
+        if not self.stable:
+            below = [limit for limit in self.limit.crossings[0] if limit <= depth]
+            high = below[-1] * highest_factor(self.neglected) if below else np.inf
+            return f", from {1e3 * below[-1]:.4g} to {1e3 * high:.3g} mm" if high < np.inf else ""
         low, limit = self.lowest_depth, self.critical_depth
-        if not (self.stable and np.isfinite(limit) and 0.0 < low < self.case.cut.axial_depth):
+        if not (np.isfinite(limit) and 0.0 < low < depth):
             return ""
         return f", from {1e3 * limit:.4g} to {1e3 * low:.3g} mm"
 
@@ -203,7 +213,7 @@ class StabilityCheck(NotebookResult):
             ["critical depth", self._depth()],
             *self._lowest(),
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
-            ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
+            ["spectral radius", f"{self.spectral_radius:.4g}{self._radius_by()} (below 1: stable)"],
             ["cutting speed", f"{to_digits(60.0 * speed, 4)} m/min"],
             *effective,
             *self._engagement(),
@@ -211,6 +221,10 @@ class StabilityCheck(NotebookResult):
             ["feed rate", f"{to_digits(60e3 * self.case.feed_speed, 4)} mm/min"],
             ["method", self.method],
         ]
+
+    def _radius_by(self) -> str:
+        """Method of the spectral radius where it is another than that of the limit."""
+        return "" if self.radius_method in ("", self.method) else f" by {self.radius_method}"
 
     def _life(self, speed: float) -> list[list[str]]:
         """Life of the edge at a cutting speed, m/s, where the case states one."""
@@ -304,7 +318,8 @@ def check(
     limit = chosen.limits(model, speeds, depths, steps, progress)
     begin(progress, "stability of the cut itself")
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))
-    multiplier = with_multiplier(chosen).multiplier(beside, steps)
+    judge = with_multiplier(chosen)
+    multiplier = judge.multiplier(beside, steps)
     frequency = np.nan
     if abs(multiplier.value) >= 1.0:
         frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
@@ -327,6 +342,23 @@ def check(
             *model.notes,
             *notes_of(neglected),
             *notes_on_dashpot(model, chosen),
+            *_notes_on_two_methods(case, limit, chosen.name, judge.name, abs(multiplier.value)),
         ),
         neglected=neglected,
+        radius_method=judge.name,
+    )
+
+
+def _notes_on_two_methods(
+    case: Case, limit: LimitCurve, of_limit: str, of_verdict: str, radius: float
+) -> tuple[str, ...]:
+    """Say that the limit of one method is on the other side of the cut than another one says."""
+    below = sum(1 for one in limit.crossings[0] if one <= case.cut.axial_depth)
+    if of_limit == of_verdict or (below % 2 == 0) == (radius < 1.0):
+        return ()
+    word, other = (STABLE, CHATTER) if radius < 1.0 else (CHATTER, STABLE)
+    return (
+        f"by its critical depth {of_limit} would say {other}; the verdict is by {of_verdict}, "
+        f"whose spectral radius says {word}: the limits of the two methods differ, and "
+        f"`chatter check --method {of_verdict}` has that one",
     )

@@ -193,6 +193,8 @@ class StabilityDiagram(SavedResult):
         Spectral radius over spindle speed and depth.
     neglected : tuple of NeglectedEffect
         Over spindle speed: what the linear limits leave out at the operating point.
+    resting_friction : float
+        Over spindle speed: factor of the lowest limit that frictions at rest leave of it at least.
     """
 
     drawn_by: ClassVar[str] = "plots.stability_diagram.plot_limits"
@@ -213,6 +215,7 @@ class StabilityDiagram(SavedResult):
     depth_step: float = math.nan
     grid: StabilityMap | None = None
     neglected: tuple[NeglectedEffect, ...] = ()
+    resting_friction: float = 1.0
 
     @property
     def neglected_at_all_speeds(self) -> tuple[NeglectedEffect, ...]:
@@ -234,8 +237,9 @@ class StabilityDiagram(SavedResult):
 
     @property
     def lowest_depth(self) -> float:
-        """Depth, m, below which any speed is stable, with what edge forces may take off."""
-        return self.lowest.critical_depth * lowest_factor(self.neglected_at_all_speeds)
+        """Depth, m, below which any speed is stable: what edge forces and friction leave of it."""
+        factor = self.resting_friction * lowest_factor(self.neglected_at_all_speeds)
+        return self.lowest.critical_depth * factor
 
     @property
     def deciding(self) -> tuple[NeglectedEffect, ...]:

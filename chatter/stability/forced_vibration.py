@@ -137,7 +137,10 @@ def neglected_edge_forces(
     if not share_is_that_of_all_depths(model):
         share, lowest, at = _share_at_limits(model, limits, share, depth)
     because = "edge forces that set in at a chip of zero "
+    higher, highest = "", math.inf
     if lowest > 0.0:
+        # a stiffness of that share may act against the chip's as well as with it
+        higher, highest = f"{because}may raise the limit by {share:.0%}", 1.0 + share
         because += f"may lower the limit by {share:.0%}"
     else:
         because += f"are {share:.3g} times as stiff as the chip{at}"
@@ -146,7 +149,7 @@ def neglected_edge_forces(
         "a tooth is zero, and vibration shifts these moments, which linear methods leave out: "
         f"{because}; the time domain decides (--method time-domain)"
     )
-    return (NeglectedEffect(EDGE_FORCES, share, lowest, 1.0, because, note),)
+    return (NeglectedEffect(EDGE_FORCES, share, lowest, highest, because, note, higher),)
 
 
 def _share_at_limits(

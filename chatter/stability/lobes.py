@@ -19,7 +19,10 @@ from chatter.stability.neglected_effects import EDGE_FORCES, notes_of
 from chatter.stability.pockets import depth_margin, find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
-from chatter.stability.resting_friction import neglected_resting_friction
+from chatter.stability.resting_friction import (
+    lowest_limit_with_resting_friction,
+    neglected_resting_friction,
+)
 from chatter.stability.search_range import (
     axial_depths,
     beyond_the_cut,
@@ -97,6 +100,9 @@ def lobes(
         neglected=neglected,
         operating=operating,
         lowest=lowest,
+        resting_friction=lowest_limit_with_resting_friction(
+            model, speeds, zero_order.lowest_depth
+        ),
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
         grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),

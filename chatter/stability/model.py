@@ -12,6 +12,7 @@ import numpy as np
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
 from chatter.compile.inclined_axis import (
     check_inclined_axis,
+    hint_of_tilt,
     inclined_engagement,
     is_inclined,
     tool_axis,
@@ -359,7 +360,7 @@ def _no_limit(case: Case, cutter: Cutter) -> str:
         return (
             f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm no "
             "edge of the inclined tool reaches the work, or the modes move without changing the "
-            "chip; there is no stability limit" + _hint_of_stepover(case)
+            "chip; there is no stability limit" + (hint_of_tilt(case) or _hint_of_stepover(case))
         )
     if not cutter.is_cylindrical:
         return (

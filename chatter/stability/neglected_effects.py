@@ -24,6 +24,7 @@ class NeglectedEffect(NamedTuple):
     highest: float  # and at most this factor; inf where unknown
     because: str  # clause that goes behind a verdict
     note: str  # empty where the model says it already
+    because_higher: str = ""  # clause behind one of chatter; as `because` where empty
 
     def summary(self) -> dict:
         """Return the effect as JSON knows it."""
@@ -44,6 +45,18 @@ def notes_of(effects: Sequence[NeglectedEffect]) -> tuple[str, ...]:
 def lowest_factor(effects: Sequence[NeglectedEffect]) -> float:
     """Factor of a linear limit that all effects together leave of it at least."""
     return math.prod(effect.lowest for effect in effects)
+
+
+def highest_factor(effects: Sequence[NeglectedEffect]) -> float:
+    """Factor of a linear limit to which all effects together may raise it; inf where unknown."""
+    return math.prod(effect.highest for effect in effects)
+
+
+def reasons_of(effects: Sequence[NeglectedEffect], *, stable: bool) -> list[str]:
+    """Clauses on effects that may turn a linear verdict: of stable or of chatter."""
+    if stable:
+        return [effect.because for effect in effects if effect.lowest < 1.0]
+    return [effect.because_higher or effect.because for effect in effects if effect.highest > 1.0]
 
 
 def deciding(
@@ -71,7 +84,6 @@ def deciding(
             return ()
         return tuple(effect for effect in effects if effect.lowest < 1.0)
     below = [limit for limit in crossings if limit <= depth]
-    high = math.prod((effect.highest for effect in effects), start=below[-1] if below else 0.0)
-    if not depth < high:
+    if not (below and depth < below[-1] * highest_factor(effects)):
         return ()
     return tuple(effect for effect in effects if effect.highest > 1.0)

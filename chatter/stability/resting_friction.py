@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from chatter.description.arrays import Array
+from chatter.description.machine.references import is_straight
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
@@ -19,15 +22,18 @@ if TYPE_CHECKING:
 
 #: change of the limit by what sticks that is worth a note
 _REPORTED = 0.02
+#: amplitudes, m, at which the limit is looked at beside that of the case: presliding damps most at
+#: some of them, so that the limit there may be above that of either end
+_AMPLITUDES = (0.3e-6, 2e-6, 20e-6)
 #: frequency, Hz, and velocity, m/s (rad/s), of sliding at which frictions are compared
 _LINE, _SLOW = 1.0, 1e-6
 
 
 def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ...]:
-    """What the limit at the speed of the case is with resting frictions stuck and without.
+    """What the limit at the speed of the case is by how far resting frictions vibrate.
 
-    Zeroth-order limits: what is compared is the structures. None where no friction rests, or where
-    it makes no difference.
+    Stuck, at some amplitudes and without them. Zeroth-order limits: what is compared is the
+    structures. None where no friction rests, or where it makes no difference.
     """
     if model.case.structure.machine is None:
         return ()
@@ -44,25 +50,25 @@ def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ..
         return float(zero_order_of(own, np.array([speed])).critical_depth[0])
 
     here, stuck, free = map(limit, (structure, structure.with_stuck(), structure.without_resting()))
-    if math.isclose(stuck, free, rel_tol=_REPORTED) and math.isclose(here, free, rel_tol=_REPORTED):
+    at = {one: limit(structure.with_amplitude(one)) for one in _AMPLITUDES}
+    limits = (stuck, *at.values(), here, free)
+    low, high = min(limits), max(limits)
+    if high == low or math.isclose(low, high, rel_tol=_REPORTED):
         return ()
-    laws = {one.name: one.law for one in structure.cut.machine.frictions}
-    ways = {name: _giving_way(laws[name]) for name in names}
-    listed = ", ".join(f"{name} {way:.2g}" for name, way in ways.items() if way > 0.0)
-    how_far = f"; they slide from (m or rad of their own motion): {listed}" if listed else ""
+    listed = ", ".join(_sliding_from(structure, names))
+    how_far = f"; their own motion makes them slide from: {listed}" if listed else ""
     taken = "as stuck" if amplitude == 0.0 else f"at vibration of {1e6 * amplitude:g} um"
     note = (
         f"frictions of axes at rest ({', '.join(names)}) are taken {taken} "
         f"(structure.friction_amplitude): at {rpm(speed):.0f} rpm the zeroth-order limit is "
         f"{_shown(here)} so, {_shown(stuck)} with them stuck, as under vanishing vibration, and "
-        f"{_shown(free)} without them{how_far}"
+        f"{_shown(free)} without them{_highest_at(at, max(stuck, here, free))}{how_far}"
     )
-    low, high = min(stuck, free), max(stuck, free)
     effect = NeglectedEffect(
         name="resting friction",
         share=high / low - 1.0,
-        lowest=min(low / here, 1.0) if math.isfinite(here) else 0.0,
-        highest=max(high / here, 1.0) if math.isfinite(here) else 1.0,
+        lowest=low / here if math.isfinite(here) else 0.0,
+        highest=high / here if math.isfinite(here) else 1.0,
         because=f"frictions of axes at rest make the limit anything from {_shown(low)} to "
         f"{_shown(high)}, by the amplitude of vibration (zeroth order)",
         note=note,
@@ -70,13 +76,54 @@ def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ..
     return (effect,)
 
 
+def lowest_limit_with_resting_friction(model: MillingModel, speeds: Array, here: float) -> float:
+    """Factor of the lowest limit over speeds, rad/s, that resting frictions leave of it at least.
+
+    With them stuck or without, whichever is less, over the lowest zeroth-order limit as they are
+    taken, `here`, m; at most 1, and 1 where none rests.
+    """
+    if model.case.structure.machine is None:
+        return 1.0
+    from chatter.compile.linearised_machine import LinearisedMachine
+
+    structure = model.structure
+    if not isinstance(structure, LinearisedMachine) or not structure.resting:
+        return 1.0
+    if not math.isfinite(here):
+        return 1.0
+    changed = (structure.with_stuck(), structure.without_resting())
+    lowest = min(
+        zero_order_of(replace(model, structure=one), speeds).lowest_depth for one in changed
+    )
+    return min(1.0, lowest / here)
+
+
 def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
     """Say what the limit at the speed of the case is with resting frictions stuck and without."""
     return tuple(effect.note for effect in neglected_resting_friction(model))
 
 
+def _highest_at(limits: Mapping[float, float], others: float) -> str:
+    """Say at which amplitude, m, a limit, m, is above all others; empty where none is."""
+    amplitude, highest = max(limits.items(), key=lambda one: one[1])
+    if highest <= others:
+        return ""
+    return f"; it is highest, {_shown(highest)}, at vibration of about {1e6 * amplitude:g} um"
+
+
 def _shown(depth: float) -> str:
     return f"{depth * 1e3:.3g} mm" if math.isfinite(depth) else "none"
+
+
+def _sliding_from(structure: LinearisedMachine, names: Sequence[str]) -> Iterator[str]:
+    """Motion of each friction, along or about its axis, beyond which it slides, in words."""
+    laws = {one.name: one.law for one in structure.cut.machine.frictions}
+    file = structure.cut.file
+    for name in names:
+        way = _giving_way(laws[name])
+        if way > 0.0:
+            unit = "um" if is_straight(file, file.friction[name].on) else "urad"
+            yield f"{name} {1e6 * way:.2g} {unit}"
 
 
 def _giving_way(law: FrictionLaw) -> float:

@@ -174,10 +174,7 @@ def _diagram_axis(case: Case, axis: Variation) -> DiagramAxis:
 
 def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> StabilityDiagram:
     labels = [f"{axis.path} = {value.label}" for value in axis.values]
-    points = [
-        _Point(_patched(case, [(axis, value)], label), method)
-        for value, label in zip(axis.values, labels, strict=True)
-    ]
+    points = [_Point(one, method) for one in _cases_along(case, axis)]
     found = each(_limit_at, points, "values")
     reasons = _reasons(found, case.name, labels)
     crossings = tuple(np.array(one["crossings"], dtype=np.float64) for one in found)
@@ -322,6 +319,27 @@ def _patched(case: Case, chosen: Sequence[tuple[Variation, Value]], label: str) 
         return patched(case, patch)
     except InputError as error:
         raise InputError([f"at {label}: {text}" for text in error.messages]) from None
+
+
+def _cases_along(case: Case, axis: Variation) -> list[Case]:
+    """Case at every value of an axis.
+
+    InputError where some describe no case, with what of the range is left.
+    """
+    cases, refused = {}, {}
+    for value in axis.values:
+        try:
+            cases[value.number] = patched(case, value.patch)
+        except InputError as error:
+            refused[value.number] = (value.label, error.messages)
+    if not refused:
+        return list(cases.values())
+    label, messages = next(iter(refused.values()))
+    left = ""
+    if cases:
+        ends = f"{min(cases):.6g} to {max(cases):.6g} {axis.unit}".rstrip()
+        left = f"; {len(cases)} of the {len(axis.values)} values make a cut, {ends}"
+    raise InputError([f"at {axis.path} = {label}: {text}{left}" for text in messages])
 
 
 def _kept(

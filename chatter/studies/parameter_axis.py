@@ -70,11 +70,15 @@ def _read(given: AxisGiven, case: Case, option: str, count: int, most: int) -> V
 
 def _require_quantity(case: Case, path: str, option: str) -> None:
     if field_of(case, path) is None:
-        why = f"a path to one is wanted, {_EXAMPLE}"
         steps = parse_path(path)
         if info_at(Case, steps) is None:
-            why = unknown_key(Case, steps)
-        raise InputError(f"{option} {formatted(path)}: there is no such quantity in a case; {why}")
+            why = f"there is no such quantity in a case; {unknown_key(Case, steps)}"
+        else:
+            why = (
+                f"is no quantity that varies smoothly, as an axis does ({_EXAMPLE}); "
+                f"`chatter whatif --vary {path}=...` compares its values"
+            )
+        raise InputError(f"{option} {formatted(path)}: {why}")
 
 
 def speed_axis(case: Case) -> Variation:

@@ -265,3 +265,19 @@ def test_calls_of_the_loop_are_there_in_python():
 def test_commands_write_no_json_that_is_not_asked_for(tmp_path):
     shown = chatter_command("check", written(tmp_path)).stdout
     assert "{" not in shown
+
+
+def test_check_says_which_method_the_verdict_is_by_where_limits_of_two_differ():
+    """It said "chatter: 1.05 mm" above a table with a critical depth of 1.1 mm."""
+    found = chatter.check(cut(cut__axial_depth="1.05 mm"), method="zero-order")
+    assert found.critical_depth > 1.05e-3
+    assert not found.stable
+    assert any("zero-order would say stable; the verdict is by collocation" in one
+               for one in found.notes)  # fmt: skip
+    assert ["spectral radius", f"{found.spectral_radius:.4g} by collocation (below 1: stable)"] in (
+        found.rows()
+    )
+    alike = chatter.check(cut(cut__axial_depth="0.5 mm"), method="zero-order")
+    assert not any("would say" in one for one in alike.notes)
+    own = chatter.check(cut(cut__axial_depth="0.5 mm"), method="collocation")
+    assert ["spectral radius", f"{own.spectral_radius:.4g} (below 1: stable)"] in own.rows()

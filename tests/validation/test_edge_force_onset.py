@@ -142,3 +142,36 @@ def test_time_domain_grows_below_the_linear_limit_as_the_note_says(edge):
     told = [note for note in chatter.check(deep).notes if "edge forces set in" in note]
     assert (grown.radius > 1.0) == edge
     assert len(told) == edge
+
+
+def test_edge_forces_may_raise_a_limit_of_period_doubling():
+    """The time domain is stable 5 % above it; beyond 1 plus their share it grows again."""
+    rpm = 19412.0
+    case = slot(teeth=3, diameter=12e-3, helix=math.radians(30)).patch(
+        {
+            "material": {"Ktc": 900e6, "Krc": 300e6, "Kte": 12e3, "Kre": 9e3},
+            "cut": {
+                "mode": "up", "spindle_speed": rpm * RPM, "feed_per_tooth": 0.1e-3,
+                "axial_depth": 1e-3, "radial_depth": 6e-3,
+            },
+            "structure.mode": [
+                {"frequency": 920, "damping": 0.02, "stiffness": 5e6, "direction": [0, 1, 0]},
+            ],
+        }
+    )  # fmt: skip
+    found = chatter.check(case)
+    (edge,) = found.neglected
+    assert found.limit.bifurcation == ("flip",)
+    limit = found.critical_depth
+    above, beyond = 1.05 * limit, 1.05 * edge.highest * limit
+    model, speeds = milling_model(case.patch({"cut.axial_depth": above})), np.full(2, rpm * RPM)
+    grown = growths(model.case, model.structure.modes, speeds, np.array([above, beyond]))
+    assert grown[0].radius < 0.99
+    assert grown[1].radius > 1.01
+    of_above, of_beyond = (
+        chatter.check(case.patch({"cut.axial_depth": depth})) for depth in (above, beyond)
+    )
+    assert not of_above.stable
+    assert (of_above.verdict, of_beyond.verdict) == ("not certain", "chatter")
+    reason = of_above.sentences()[1]
+    assert f"may raise the limit by {edge.share:.0%}, from {1e3 * limit:.4g} to " in reason

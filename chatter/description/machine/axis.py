@@ -10,12 +10,15 @@ from chatter.description.directions import Direction
 from chatter.description.machine.control import ControlSection
 from chatter.description.machine.drive import DriveSection
 from chatter.description.machine.fields import Position
-from chatter.description.quantities import either_quantity, quantity
+from chatter.description.quantities import either_quantity, quantities, quantity
 from chatter.description.section import Section, raise_if_any
 from dynamics.control.cascade import DriveController
 from dynamics.drive.parts import DrivenAxis
 from dynamics.machine.description import FeedDrive, MachineAxis
 from dynamics.structure.bodies import GROUND
+
+#: of positions at the end of a travel, m
+_ROUNDING = 1e-9
 
 
 class BrakeSection(Section):
@@ -40,6 +43,11 @@ class AxisSection(Section):
         None, description="all parts that travel with the axis; moving by default"
     )
     position: quantity("length", at_least=-200.0, at_most=200.0) = 0.0
+    travel_limits: quantities(2, "length", at_least=-200.0, at_most=200.0) | None = Field(
+        None,
+        description="lowest and highest position that the axis may be at; not limited by default",
+        examples=[["-200 mm", "200 mm"]],
+    )
     scale_at: Position | None = Field(
         None, description="place of the direct measuring system; at by default"
     )
@@ -68,12 +76,35 @@ class AxisSection(Section):
                 for index, motor in enumerate(() if kind is None else self.drive.motors)
                 if motor.preload
             ]
-        if kind is not None and self.drive.is_rotary and (self.carries or self.position):
-            problems.append(
-                ("", f'drive.kind = "{kind}" turns; position and carries do not belong to it')
-            )
-        raise_if_any(problems)
+        shifted = self.carries or self.position or self.travel_limits
+        if kind is not None and self.drive.is_rotary and shifted:
+            text = f'drive.kind = "{kind}" turns; position, travel_limits and carries do not belong'
+            problems.append(("", f"{text} to it"))
+        raise_if_any([*problems, *self._problems_of_travel()])
         return self
+
+    def _problems_of_travel(self) -> list[tuple[str, str]]:
+        """Limits that are none, and a position beyond them."""
+        if self.travel_limits is None:
+            return []
+        low, high = self.travel_limits
+        if low >= high:
+            text = f"{1e3 * low:g} mm is not below {1e3 * high:g} mm"
+            return [("travel_limits", text)]
+        text = self.beyond_travel(self.position)
+        return [("position", text)] if text else []
+
+    def beyond_travel(self, position: float) -> str:
+        """Say that a position, m, lies beyond the travel of the axis; empty where it does not."""
+        if self.travel_limits is None:
+            return ""
+        low, high = self.travel_limits
+        if low - _ROUNDING <= position <= high + _ROUNDING:
+            return ""
+        return (
+            f"{1e3 * position:.6g} mm is not within {1e3 * low:g} to {1e3 * high:g} mm, the travel "
+            "of the axis (travel_limits)"
+        )
 
     @property
     def travelling(self) -> tuple[str, ...]:

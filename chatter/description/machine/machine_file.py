@@ -24,7 +24,10 @@ from chatter.description.machine.frequency_response import FrfSection
 from chatter.description.machine.friction import FrictionSection
 from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.move import MoveSection
-from chatter.description.machine.questioned_machine import questions_of_machine
+from chatter.description.machine.questioned_machine import (
+    questions_of_machine,
+    questions_of_positions,
+)
 from chatter.description.machine.references import dimension_problems, reference_problems
 from chatter.description.patchable import Description
 from chatter.description.path import Step
@@ -142,7 +145,13 @@ class MachineFile(Description):
     def notes(self) -> tuple[str, ...]:
         """What the user should know of the file: renamed keys, and unlikely values."""
         asked = (f"{self.name}: {text}" for text in questions_of_machine(self))
-        return (*super().notes, *asked)
+        own = {name: axis.position for name, axis in self.axis.items() if axis.position}
+        return (*super().notes, *asked, *self.questions_of_positions(own))
+
+    def questions_of_positions(self, given: Mapping[str, float | str]) -> tuple[str, ...]:
+        """Ask about positions of axes that are hardly those of this machine."""
+        positions = self.positions(given)
+        return tuple(f"{self.name}: {text}" for text in questions_of_positions(self, positions))
 
     @property
     def part_names(self) -> tuple[str, ...]:
@@ -164,8 +173,8 @@ class MachineFile(Description):
     def positions(self, given: Mapping[str, float | str]) -> dict[str, float]:
         """Positions of axes, m.
 
-        Given in m or as a quantity such as "120 mm". Raises InputError if there is no such axis, or
-        a position is none.
+        Given in m or as a quantity such as "120 mm". Raises InputError if there is no such axis, a
+        position is none, or it lies beyond the travel of the axis.
         """
         read = {}
         for name, position in given.items():
@@ -179,7 +188,23 @@ class MachineFile(Description):
                 read[name] = _POSITION.read(position)
             except ValueError as error:
                 raise InputError(f"{self.name}: position of axis {name}: {error}") from None
+            if beyond := self.axis[name].beyond_travel(read[name]):
+                raise InputError(f"{self.name}: position of axis {name}: {beyond}")
         return read
+
+    def refuse_travel(self, travelled: Mapping[str, tuple[float, float]]) -> None:
+        """Raise InputError where axes would go beyond their travel.
+
+        Lowest and highest position of axes, m.
+        """
+        problems = [
+            f"{self.name}: axis {name} would leave its travel: {beyond}"
+            for name, ends in travelled.items()
+            for end in ends
+            if (beyond := self.axis[name].beyond_travel(end))
+        ]
+        if problems:
+            raise InputError(problems)
 
 
 def load_machine(path: str | Path) -> MachineFile:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 if TYPE_CHECKING:
     from chatter.description.machine.axis import AxisSection
@@ -47,6 +49,38 @@ def questions_of_machine(file: MachineFile) -> list[str]:
     for name, axis in file.axis.items():
         asked += _questions_of_axis(f"axis.{name}", axis)
     return asked
+
+
+def questions_of_positions(file: MachineFile, positions: Mapping[str, float]) -> list[str]:
+    """Ask about positions, m, farther than the whole machine is long along the axis.
+
+    Only of axes that state no `travel_limits`: beyond these a position is refused.
+    """
+    asked = []
+    for name, position in positions.items():
+        axis = file.axis[name]
+        length = _length_along(file, np.asarray(axis.direction))
+        if axis.travel_limits is None and abs(position) > length > 0.0:
+            asked.append(
+                f"axis.{name}.position: is {1e3 * position:.6g} mm meant? along {name} the whole "
+                f"machine is {1e3 * length:.4g} mm long; axis.{name}.travel_limits states how far "
+                "the axis goes"
+            )
+    return asked
+
+
+def _length_along(file: MachineFile, direction: np.ndarray) -> float:
+    """Distance, m, along a direction between the outermost places that the file names."""
+    places = [np.asarray(axis.at) for axis in file.axis.values() if axis.at is not None]
+    places += [np.asarray(point.at) for point in file.point.values()]
+    for connector in file.connector.values():
+        places += [np.asarray(place) for place in connector.positions or (connector.at,)]
+    reach = [float(place @ direction) for place in places]
+    for body in file.body.values():
+        middle = float(np.asarray(body.centre) @ direction)
+        half = 0.5 * float(np.abs(direction) @ np.asarray(body.size or (0.0,) * 3))
+        reach += [middle - half, middle + half]
+    return max(reach, default=0.0) - min(reach, default=0.0)
 
 
 def _question_of_density(path: str, body: BodySection) -> list[str]:

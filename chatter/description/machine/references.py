@@ -147,7 +147,7 @@ def dimension_problems(file: MachineFile, data: Mapping[str, Any]) -> list[Probl
             given = own.get("control", {}).get(section, {}).get(key)
             problems += _of_the_other_kind(type(file), steps, given, not axis.drive.is_rotary)
     for name, friction in file.friction.items():
-        straight = _is_straight(file, friction.on)
+        straight = is_straight(file, friction.on)
         problems += _of_the_other_kind(
             type(file), ("friction", name), data["friction"][name], straight
         )
@@ -163,7 +163,7 @@ def dimension_problems(file: MachineFile, data: Mapping[str, Any]) -> list[Probl
     return problems
 
 
-def _is_straight(file: MachineFile, target: Any) -> bool:
+def is_straight(file: MachineFile, target: Any) -> bool:
     """Whether the motion of a friction is a displacement."""
     if target.motor is not None:
         return file.axis[target.motor].drive.motor_is_linear

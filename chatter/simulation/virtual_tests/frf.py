@@ -93,11 +93,15 @@ class FrfResult:
         """Curve of a name."""
         return {curve.name: curve for curve in self.curves}[name]
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the linearised curves assume, and what is asked about."""
+        return tuple(dict.fromkeys(note for curve in self.curves for note in curve.notes))
+
     def summary(self) -> dict:
         """Peaks of every curve, for people and machines."""
-        notes = dict.fromkeys(note for curve in self.curves for note in curve.notes)
         curves = [curve.summary() for curve in self.curves]
-        further = {"notes": list(notes)} if notes else {}
+        further = {"notes": list(self.notes)} if self.notes else {}
         return {"machine": self.machine, "curves": curves, **further}
 
     def plot(self) -> Figure:

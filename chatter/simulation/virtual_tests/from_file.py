@@ -177,7 +177,7 @@ def _one_frf(
         tested,
         "torque" if is_rotation(file, section.excite) else "force",
         "rotation" if is_rotation(file, section.read or section.excite) else "displacement",
-        closed_backlashes(machine),
+        (*file.questions_of_positions(section.position), *closed_backlashes(machine)),
     )
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
+from chatter.stability.neglected_effects import NOT_CERTAIN
 from chatter.studies.whatif.measures import Curve, Outcome, Quantity
 
 if TYPE_CHECKING:
@@ -78,7 +79,8 @@ def sentences(study: WhatIf) -> list[str]:
         why = f" as {one.path} goes from {one.values[0].label} to {one.values[-1].label}{others}"
         found += _changes(study, study.outcomes[first], study.outcomes[last], why)
     return [
-        *found, *_extremes(study), *_chattering(study), *_without_effect(study), *failures(study),
+        *found, *_extremes(study), *_uncertain(study), *_chattering(study),
+        *_without_effect(study), *failures(study),
     ]  # fmt: skip
 
 
@@ -89,6 +91,19 @@ def _alone(study: WhatIf) -> list[str]:
     quantity = study.measure.quantities[study.quantity]
     value = value_text(quantity, study.outcomes[0], study.quantity)
     return [f"{title_of(study, quantity)}: {value} at {_where(study, 0)}"]
+
+
+def _uncertain(study: WhatIf) -> list[str]:
+    """Sentence on points whose verdict is not certain."""
+    found = [k for k, one in enumerate(study.outcomes) if one.words.get("verdict") == NOT_CERTAIN]
+    if not found:
+        return []
+    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
+    where = "; ".join(_where(study, k) for k in found[:_MOST_NAMED])
+    return [
+        f"the verdict is not certain at {where}{more}: `chatter check` with that --set says what "
+        "decides there"
+    ]
 
 
 def _chattering(study: WhatIf) -> list[str]:
