@@ -6,6 +6,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from chatter.description.arrays import Array
 
 #: start angles tried within the pitch of a tooth
 _STARTS = 48
+#: multiple of the least residual up to which start angles fit alike
+_ALIKE = 1.01
 #: runout that is tried first, in its unit, and its directions
 _FIRST_RUNOUT, _DIRECTIONS = 0.5, 6
 _FIRST_EXPONENT, _FIRST_HELIX = 0.7, math.radians(30.0)
@@ -117,46 +120,77 @@ def _first_fit(averages: Sequence[RevolutionAverage], unsigned: Sequence[str]) -
     """Linear law without runout, its start angles and the senses of the channels looked for."""
     teeth = averages[0].case.tool.teeth
     linear = next(law for law in _laws(LAWS, averages) if law.name == _FIRST_LAW)
-    tried = [
-        _started(WaveformModel(linear, teeth, dict(zip(unsigned, choice, strict=True))), averages)
-        for choice in itertools.product((1.0, -1.0), repeat=len(unsigned))
+    choices = itertools.product((1.0, -1.0), repeat=len(unsigned))
+    models = [
+        WaveformModel(linear, teeth, dict(zip(unsigned, one, strict=True))) for one in choices
     ]
-    _, _, model, start = min(tried, key=lambda one: one[:2])
-    return fitted(model, averages, start)
-
-
-def _started(
-    model: WaveformModel, averages: Sequence[RevolutionAverage]
-) -> tuple[int, float, WaveformModel, Array]:
-    """How implausible the coefficients are, the residual, the model and its start angles."""
     largest = max(averages, key=lambda one: one.case.cut.feed_per_tooth)
-    problem = Problem(model, [largest])
-    starts = np.linspace(0.0, 2.0 * math.pi / model.teeth, _STARTS, endpoint=False)
-    candidates = []
-    for start in starts:
-        values, left = problem.solved(np.array([start]))
-        coefficients = values[: len(model.law.keys)]
+    began = _preferred([start for model in models for start in _starts(model, largest)])
+    found = [began.angle if one is largest else _nearest(began, one) for one in averages]
+    return fitted(began.model, averages, np.array(found))
+
+
+class _Start(NamedTuple):
+    """A start angle of one cut, and what the linear law is like that fits best there."""
+
+    model: WaveformModel
+    angle: float  # rad
+    coefficients: Array
+    wrong: int  # senses looked for: cutting coefficients below zero, radial above tangential
+    power: float  # of the residual
+    doubtful: bool  # whether a tangential or radial coefficient, of chip or edge, is below zero
+    offset: float  # size of the offsets over that of the varying force
+
+
+def _angles(model: WaveformModel) -> Array:
+    """Start angles that are tried, rad, within the pitch of a tooth."""
+    return np.linspace(0.0, 2.0 * math.pi / model.teeth, _STARTS, endpoint=False)
+
+
+def _starts(model: WaveformModel, cut: RevolutionAverage) -> list[_Start]:
+    problem = Problem(model, [cut])
+    count = len(model.law.keys)
+    found = []
+    for angle in _angles(model):
+        values, left = problem.solved(np.array([angle]))
+        coefficients, offsets = values[:count], values[count:]
         cutting = coefficients[model.law.cutting]
         wrong = int(np.sum(cutting < 0.0)) + int(cutting[1] > cutting[0])
-        candidates.append((wrong * int(bool(model.signs)), float(left @ left), start, coefficients))
-    wrong, power, start, coefficients = min(candidates, key=lambda one: one[:2])
-    found = [
-        start if one is largest else _nearest(model, one, coefficients, starts) for one in averages
-    ]
-    return wrong, power, model, np.array(found)
+        in_plane = [number for number, key in enumerate(model.law.keys) if key[1] != "a"]
+        found.append(
+            _Start(
+                *(model, float(angle), coefficients, wrong if model.signs else 0),
+                float(left @ left),
+                bool(np.any(coefficients[in_plane] < 0.0)),
+                float(np.linalg.norm(offsets * problem.weights[:, 0])),
+            )
+        )
+    return found
 
 
-def _nearest(
-    model: WaveformModel, one: RevolutionAverage, coefficients: Array, starts: Array
-) -> float:
+def _preferred(starts: Sequence[_Start]) -> _Start:
+    """Best start; of those that fit alike the one whose coefficients cut, or of the least offset.
+
+    In a slot an odd number of teeth turned by half a revolution is in the work where it was out of
+    it. Chip forces are then the opposite of what they were but for a constant, which free offsets
+    take up, and edge forces are the same: both turns fit every waveform alike.
+    """
+    best = min(starts, key=lambda one: (one.wrong, one.power))
+    alike = [one for one in starts if one.wrong == best.wrong and one.power <= _ALIKE * best.power]
+    return min(alike, key=lambda one: (one.doubtful, one.offset))
+
+
+def _nearest(began: _Start, one: RevolutionAverage) -> float:
+    """Start angle of another cut by the coefficients of the first."""
+    model = began.model
     parts = model.split(np.zeros(1), 1)
     forces = model.forces(one, parts)
 
     def left(start: float) -> float:
-        shown = model.seen(one, parts, forces, start) @ coefficients
+        shown = model.seen(one, parts, forces, start) @ began.coefficients
         return float(np.sum(np.abs((shown - one.amplitude)[:, 1:]) ** 2))
 
-    return float(min(starts, key=left))
+    return float(min(_angles(model), key=left))
 
 
 def _with_runout(fit: WaveformFit) -> WaveformFit:
