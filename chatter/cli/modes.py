@@ -50,6 +50,10 @@ class ModesOptions:
         ),
     ] = None
     columns: options.Columns = None
+    sampling_rate: Annotated[
+        str | None,
+        typer.Option("--sampling-rate", help='Of records without time, such as "25.6 kHz".'),
+    ] = None
     out: options.OutputFolder = None
     json: options.Json = False
 
@@ -57,6 +61,8 @@ class ModesOptions:
 @takes_options
 def modes(options_: ModesOptions) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
+    from chatter.io.hammer_records import StatedRecord
+    from chatter.monitoring.detect import sampling_frequency
     from chatter.studies.modal_test import modes as run_modes
 
     folder = options.output_folder(options_.out, options_.files[0].stem or "modes")
@@ -68,7 +74,7 @@ def modes(options_: ModesOptions) -> None:
             side=options_.side,
             band=options_.band,
             mode_count=options_.mode_count,
-            columns=options_.columns,
+            columns=StatedRecord(options_.columns, sampling_frequency(options_.sampling_rate)),
             poles=_poles(options_.pole),
         )
     present(

@@ -129,6 +129,10 @@ _MEASURED_WORDS = {
     "mg": "millistandard_gravity",
     "lb": "lbf",
     "Sec": "second",
+    # as LabVIEW and others write them out
+    **{one: one.lower() for one in ("Newton", "Newtons", "Volt", "Volts", "Pascal", "Pascals")},
+    **{one: one.lower() for one in ("Second", "Seconds", "Ampere", "Amperes", "Watt", "Watts")},
+    **{"gs": "standard_gravity", "Amps": "ampere", "amps": "ampere"},
 }
 _LONGEST_TEXT = 100
 

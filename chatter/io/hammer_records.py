@@ -14,9 +14,21 @@ from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point
 from dynamics.frf.hammer.record import FEWEST_SAMPLES, HammerRecord
 
+#: Hz, below which a time without a unit is not taken for seconds
+_SLOW_RATE = 200.0
+#: names of a time without a unit, which is in s
+_TIMES = ("time", "t")
 _EXAMPLE = "time [s],force [N],acceleration [m/s^2]"
 #: share of a sampling interval by which a time stamp may lie off the even grid, beyond rounding
 _TIME_JITTER = 0.1
+
+
+@dataclass(frozen=True)
+class StatedRecord:
+    """What is stated of a record whose file does not say it."""
+
+    columns: str | None = None  # names and units of all columns, in their order
+    sampling_rate: float | None = None  # Hz, of a file without a time
 
 
 @dataclass(frozen=True)
@@ -30,14 +42,19 @@ class HammerFolder:
 
 
 def read_hammer_record(
-    path: str | Path, response: str | None = None, columns: str | None = None
+    path: str | Path,
+    response: str | None = None,
+    columns: str | None = None,
+    sampling_rate: float | None = None,
 ) -> HammerRecord:
     """Read one hammer record from a file of any format of signals.
 
     The columns, such as ``time [s],force [N],acceleration [m/s^2]``, are told by their units: a
-    time, a force, and a displacement, velocity or acceleration, by its name where there are
-    several; `columns` states them where the file has no heading. MeasurementError if the file is no
-    such table, its samples are not evenly spaced, or the response column cannot be told.
+    time (or a column ``time`` or ``t`` without a unit, which is in s), a force, and a displacement,
+    velocity or acceleration, by its name where there are several; `columns` states them where the
+    file has no heading, `sampling_rate`, Hz, stands for the time where it has none.
+    MeasurementError if the file is no such table, its samples are not evenly spaced, or the
+    response column cannot be told.
     """
     path = Path(path)
     table = read_signal_table(path, columns)
@@ -47,12 +64,23 @@ def read_hammer_record(
             f'the first line must be like: {_EXAMPLE}; or state them: --columns "{_EXAMPLE}"'
         )
     channels = [_channel(path, column) for column in table.columns]
-    time = _only(path, table, channels, ("time",), None)
+    has_time = any(channel == "time" for channel, _ in channels)
+    if sampling_rate is None and not has_time:
+        held = ", ".join(column.heading for column in table.columns)
+        raise MeasurementError(
+            f"{path}: no column is a time; there are {held}; "
+            'state --sampling-rate, such as "25.6 kHz"'
+        )
     force = _only(path, table, channels, ("force",), None)
     motion = _only(path, table, channels, tuple(QUANTITY_OF_MOTION), response)
     force_values = table.numbers(force) * channels[force][1]
     response_values = table.numbers(motion) * channels[motion][1]
-    start, rate = _even_sampling(path, table, time, channels[time][1])
+    if sampling_rate is None:
+        time = _only(path, table, channels, ("time",), None)
+        start, rate = _even_sampling(path, table, time, channels[time][1])
+        _require_plausible(path, table.columns[time], rate)
+    else:
+        start, rate = 0.0, _given_rate(path, table, sampling_rate)
     return HammerRecord(
         name=path.name,
         sampling_rate=rate,
@@ -67,15 +95,35 @@ def read_hammer_record(
 
 
 def is_hammer_record(path: Path, columns: str | None = None) -> bool:
-    """Tell whether a file is a time record: one of its columns is a time by its unit."""
+    """Tell whether a file is a time record: it has a time, or a force and a motion, by units."""
     try:
         table = read_signal_table(path, columns)
-        return any(_channel(path, column)[0] == "time" for column in table.columns)
+        held = {_channel(path, column)[0] for column in table.columns}
     except MeasurementError:
         return False
+    return "time" in held or ("force" in held and bool(held & set(QUANTITY_OF_MOTION)))
 
 
-def read_hammer_folder(path: str | Path, columns: str | None = None) -> HammerFolder:
+def _require_plausible(path: Path, time: Column, rate: float) -> None:
+    """Ask for the unit of a time that names none and would be that of a very slow record."""
+    if not time.unit and not time.content and rate < _SLOW_RATE:
+        raise MeasurementError(
+            f"{path}: {time.name} has no unit, and in s it would be sampled at {rate:.4g} Hz; "
+            'write its unit, such as "time [ms]", or state --sampling-rate'
+        )
+
+
+def _given_rate(path: Path, table: Table, rate: float) -> float:
+    if table.size < FEWEST_SAMPLES:
+        raise MeasurementError(
+            f"{path}: {table.size} samples; a hammer record needs {FEWEST_SAMPLES}"
+        )
+    return rate
+
+
+def read_hammer_folder(
+    path: str | Path, columns: str | None = None, sampling_rate: float | None = None
+) -> HammerFolder:
     """Read every hammer record of a folder.
 
     Files as `read_hammer_record` reads them. Files of other extensions, hidden files and folders
@@ -97,7 +145,7 @@ def read_hammer_folder(path: str | Path, columns: str | None = None) -> HammerFo
             passed_over.append(file.name)
             continue
         try:
-            records.append(read_hammer_record(file, columns=columns))
+            records.append(read_hammer_record(file, None, columns, sampling_rate))
         except MeasurementError as error:
             unreadable.append((file.name, str(error).removeprefix(f"{file}: ")))
     if not records:
@@ -116,7 +164,7 @@ def _channel(path: Path, column: Column) -> tuple[Channel | None, float]:
     if column.content is not None:
         return column.content, 1.0
     if not column.unit:
-        return None, 1.0
+        return ("time" if column.name.lower().rpartition(".")[2] in _TIMES else None), 1.0
     try:
         return channel_unit(column.unit)
     except MeasurementError as error:
@@ -140,7 +188,8 @@ def _only(
     wanted = "displacement, velocity or acceleration" if len(kinds) > 1 else kinds[0]
     if not found:
         raise MeasurementError(
-            f"{path}: no column is a {wanted}; the heading must be like: {_EXAMPLE}"
+            f"{path}: no column is a {wanted}; the heading must be like: {_EXAMPLE}; or state "
+            f'the columns, here {len(table.columns)}: --columns "{_EXAMPLE}"'
         )
     if len(found) > 1:
         raise MeasurementError(f"{path}: several columns are a {wanted}: {names}; name one")

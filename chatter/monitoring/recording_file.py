@@ -44,6 +44,7 @@ _TIME = re.compile(r"\s*(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
 _TACHO = re.compile(r"\s*(tacho.*|trigger|once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.I)
 #: channels that follow the tool: motor currents and power are read only where there are none
 _SLOW = ("current", "power")
+_FEWEST_SAMPLES = 2
 #: relative scatter of the steps of time that counts as uniform
 _UNIFORM = 0.01
 
@@ -93,6 +94,7 @@ def _recording(
     numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
     time = _time(path, table, numbers, sampling_rate)
     tacho = next((numbers[one.name] for one in table.columns if _TACHO.fullmatch(one.name)), None)
+    _require_signal(path, table, numbers)
     chosen = _chosen(path, _usable(table, numbers), wanted)
     values = np.stack([one.values for one in chosen], axis=1)
     steps = np.diff(time)
@@ -124,6 +126,18 @@ def _time(
     raise InputError(
         f"{path}: no column is a time; there are {', '.join(numbers)}; state --sampling-rate"
     )
+
+
+def _require_signal(path: Path, table: Table, numbers: dict[str, Array]) -> None:
+    """Refuse a recording of one sample, or in which nothing ever changes."""
+    if table.size < _FEWEST_SAMPLES:
+        raise InputError(f"{path}: {table.size} sample is no recording")
+    signals = [name for name in numbers if not _TIME.fullmatch(name) and not _TACHO.fullmatch(name)]
+    if signals and not any(np.ptp(numbers[name]) > 0.0 for name in signals):
+        raise InputError(
+            f"{path}: {', '.join(signals)} never changes: nothing was recorded, or the sensor was "
+            "not connected"
+        )
 
 
 def _usable(table: Table, numbers: dict[str, Array]) -> list[_Channel]:

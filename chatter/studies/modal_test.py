@@ -14,6 +14,7 @@ from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
 from chatter.io.hammer_records import (
     HammerFolder,
+    StatedRecord,
     is_hammer_record,
     read_hammer_folder,
     read_hammer_record,
@@ -170,7 +171,7 @@ def modes(
     side: Side = "tool",
     band: tuple[float, float] | None = None,
     mode_count: int | None = None,
-    columns: str | None = None,
+    columns: str | StatedRecord | None = None,
     poles: Sequence[tuple[float, float]] | None = None,
 ) -> ModalTest:
     """Identify modal parameters from measured FRFs, or from hammer records.
@@ -188,9 +189,10 @@ def modes(
         Hz; found from the data where not given.
     mode_count : int, optional
         Found from the data where not given.
-    columns : str, optional
+    columns : str or StatedRecord, optional
         Names and units of the columns of hammer records that have no heading, such as
-        ``"time [s], force [N], acceleration [m/s^2]"``.
+        ``"time [s], force [N], acceleration [m/s^2]"``; or with the sampling rate, Hz, of records
+        that have no time.
     poles : sequence of (float, float), optional
         Frequencies, Hz, and damping ratios picked in the stabilisation diagram: these modes are
         refined, none is added or dropped.
@@ -209,8 +211,9 @@ def modes(
         raise InputError(f'side "{side}" is not known; there are "tool" and "workpiece"')
     if direction is not None and direction not in ("x", "y", "z"):
         raise InputError(f'direction "{direction}" is not known; there are "x", "y" and "z"')
+    stated = columns if isinstance(columns, StatedRecord) else StatedRecord(columns)
     try:
-        frfs, hammer, notes = _read(given, keep, columns)
+        frfs, hammer, notes = _read(given, keep, stated)
         frfs, assumed = _with_default_direction(frfs, direction)
         fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count, poles=poles))
     except MeasurementError as error:
@@ -223,13 +226,13 @@ def modes(
 
 
 def _read(
-    paths: Sequence[Path], keep: Sequence[str], columns: str | None
+    paths: Sequence[Path], keep: Sequence[str], stated: StatedRecord
 ) -> tuple[list[Frf], HammerTest | None, list[str]]:
     """Read FRF files or hammer records, one folder or files; the notes hold the remarks."""
     folders = [path for path in paths if path.is_dir()]
     if folders and len(paths) > 1:
         raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
-    folder = _records(paths, columns)
+    folder = _records(paths, stated)
     if folder is not None:
         test = hammer_test(folder.records, keep=keep, unreadable=folder.unreadable)
         notes = [f"{finding.record}: {finding.reason}" for finding in test.remarks]
@@ -239,13 +242,14 @@ def _read(
     return [frf for path in paths for frf in read_frfs(path)], None, []
 
 
-def _records(paths: Sequence[Path], columns: str | None) -> HammerFolder | None:
+def _records(paths: Sequence[Path], stated: StatedRecord) -> HammerFolder | None:
     """Hammer records of a folder, or of files that are time records; None of FRF files."""
+    columns, rate = stated.columns, stated.sampling_rate
     if paths[0].is_dir():
-        return read_hammer_folder(paths[0], columns)
+        return read_hammer_folder(paths[0], columns, rate)
     if columns is None and not all(is_hammer_record(p) and not _holds_frfs(p) for p in paths):
         return None
-    return HammerFolder(tuple(read_hammer_record(path, columns=columns) for path in paths))
+    return HammerFolder(tuple(read_hammer_record(path, None, columns, rate) for path in paths))
 
 
 def _holds_frfs(path: Path) -> bool:

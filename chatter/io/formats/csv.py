@@ -10,10 +10,13 @@ from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.node_table import read_nodes
 from chatter.io.table import Column, Table, is_number
+from chatter.io.time_stamps import is_time_stamp, seconds_of
 from dynamics.frf.container import MeasurementError
 
 _COMMENT = ("#", "%", "//", "!")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
+#: a whole number with its thousands in groups, which may be one with a decimal comma
+_GROUPS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
 
 
 def read_table(path: Path) -> Table:
@@ -58,8 +61,33 @@ def table_of_lines(path: Path, lines: Sequence[str]) -> Table:
             )
         rows.append(row)
         numbers.append(index + 1)
-    columns = zip(headings, zip(*rows, strict=True), strict=True)
-    return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
+    return _table(path, headings, rows, numbers)
+
+
+def _table(
+    path: Path, headings: Sequence[str], rows: Sequence[Sequence[str]], lines: Sequence[int]
+) -> Table:
+    """Table of rows, with decimal points and with times of day as seconds since the first."""
+    columns = []
+    for heading, cells in zip(headings, zip(*_with_points(rows), strict=True), strict=True):
+        if not heading and not any(cell.strip() for cell in cells):
+            continue
+        seconds = seconds_of(cells) if is_time_stamp(cells[0]) else None
+        is_time = seconds is not None
+        columns.append(Column("time [s]" if is_time else heading, seconds if is_time else cells))
+    return Table(path, tuple(columns), lines)
+
+
+def _with_points(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
+    """Decimal commas of cells in quotes as points: "1,234" is 1.234 where another says so."""
+    with_comma = {cell for row in rows for cell in row if "," in cell and _is_comma_number(cell)}
+    if all(_GROUPS.fullmatch(cell.strip()) for cell in with_comma):
+        return rows
+    return [[cell.replace(",", ".") if cell in with_comma else cell for cell in r] for r in rows]
+
+
+def _is_comma_number(cell: str) -> bool:
+    return _DECIMAL_COMMA.fullmatch(cell.strip()) is not None
 
 
 def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
@@ -87,8 +115,7 @@ def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
             )
         rows.append(row)
         numbers.append(index + 1)
-    columns = zip(headings, zip(*rows, strict=True), strict=True)
-    return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
+    return _table(path, headings, rows, numbers)
 
 
 def _is_comment(line: str) -> bool:
@@ -120,7 +147,9 @@ def _first_row(lines: Sequence[str]) -> int | None:
     for index, line in enumerate(lines):
         if not line.strip() or _is_comment(line):
             continue
-        are_numbers = [is_number(cell) for cell in _cells(line, _separator(line))]
+        cells = _cells(line, _separator(line))
+        are_numbers = [is_number(cell) or _is_comma_number(cell) for cell in cells]
+        are_numbers[0] = are_numbers[0] or is_time_stamp(cells[0])
         if are_numbers[0]:
             return index
         if with_numbers is None and any(are_numbers):
@@ -146,8 +175,21 @@ def _headings(
             # names on one line, units on the next
             pairs = zip(found[-2][0], headings, strict=True)
             headings = [_with_unit(name, unit) for name, unit in pairs]
-        return headings, index + 1
+        return _filled_from_above(headings, lines[:index], separator), index + 1
     return [], len(lines)
+
+
+def _filled_from_above(
+    headings: list[str], above: Sequence[str], separator: str | None
+) -> list[str]:
+    """Blank headings by the next one above them, as of cells that were merged downwards."""
+    if separator is None or all(headings):
+        return headings
+    rows = [_cells(line, separator) for line in reversed(above)]
+    return [
+        heading or next((row[k].strip() for row in rows if k < len(row) and row[k].strip()), "")
+        for k, heading in enumerate(headings)
+    ]
 
 
 def _with_unit(name: str, unit: str) -> str:
@@ -167,11 +209,12 @@ def _candidates(
 
 
 def _heading_cells(line: str, separator: str | None, count: int) -> list[str]:
-    line = line.strip().lstrip("#%!/").strip()
+    line = line.lstrip(" ").lstrip("#%!/").strip(None if separator is None else " \r\n")
     if separator is None or separator not in line:
         separator = _separator(re.sub(r"\[[^\]]*\]", "", line))
     if separator is not None:
-        return [cell.strip().strip('"') for cell in line.rstrip(separator).split(separator)]
+        cells = [cell.strip().strip('"') for cell in line.rstrip(separator).split(separator)]
+        return [cell for cell in cells if cell] if len(cells) > count else cells
     cells = re.findall(r"[^\[\]]+\[[^\]]*\]|\S+", line) if "[" in line else line.split()
     return [cell.strip() for cell in cells] if len(cells) == count else []
 

@@ -52,8 +52,8 @@ def frfs_of_table(table: Table) -> list[Frf]:
     path = table.path
     if not any(column.unit for column in table.columns):
         raise MeasurementError(
-            f"{path}: no heading with names and units above the numbers; "
-            f"the first line must be like: {_EXAMPLE}"
+            f"{path}: names no units; FRFs need columns like: {_EXAMPLE}; of time records state "
+            'the columns: --columns "time [s], force [N], acceleration [m/s^2]"'
         )
     if table.size < 2:
         raise MeasurementError(f"{path}: {table.size} row of numbers; at least 2 needed")

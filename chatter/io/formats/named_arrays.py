@@ -37,13 +37,17 @@ def table_of_arrays(path: Path, arrays: Mapping[str, np.ndarray]) -> Table:
 
     Vectors (n,), (n, 1) or (1, n) are a column each, a matrix (n, k) with n > k is k columns, a
     complex array its real and imaginary part; what is no number is passed over. A single number
-    called `fs` or `sampling_rate`, Hz, or `dt`, s, gives the time where no array is one.
+    called `fs` or `sampling_rate`, Hz, or `dt`, s, gives the time where no array is one. Dates are
+    a time since the first.
     MeasurementError if there is none, or they differ in length.
     """
     columns: list[Column] = []
     for name, values in arrays.items():
         if values.dtype.kind in "fiuc" and values.size > 1:
             columns += _columns(path, name, values)
+        elif values.dtype.kind in "mM" and values.size > 1 and values.ndim == 1:
+            seconds = (values - values[0]).astype("timedelta64[ns]").astype(np.float64) * 1e-9
+            columns.append(Column("time [s]", seconds))
     if not columns:
         held = ", ".join(arrays) or "nothing"
         raise MeasurementError(f"{path}: holds no array of numbers; there is {held}")

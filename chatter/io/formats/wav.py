@@ -1,10 +1,13 @@
 """WAV files: the sound, or what else a recorder takes."""
 
+import io
+import struct
 import warnings
 from pathlib import Path
 
 import numpy as np
 
+from chatter.io.files import read_content
 from chatter.io.formats.format import Format
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
@@ -21,7 +24,7 @@ def read_sound(path: Path) -> Table:
         with warnings.catch_warnings():
             # of chunks that are no sound, and of a length that a recorder has not written yet
             warnings.simplefilter("ignore", scipy.io.wavfile.WavFileWarning)
-            rate, values = scipy.io.wavfile.read(path)
+            rate, values = scipy.io.wavfile.read(io.BytesIO(_with_true_sizes(read_content(path))))
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no WAV file that can be read: {error}") from error
     if rate <= 0 or values.size == 0:
@@ -30,6 +33,21 @@ def read_sound(path: Path) -> Table:
     columns = [Column("time [s]", np.arange(len(values)) / rate)]
     columns += [Column(f"sound {k + 1}", values[:, k]) for k in range(values.shape[1])]
     return table_of(path, columns, "channels")
+
+
+def _with_true_sizes(content: bytes) -> bytes:
+    """Content whose header says how long it is: recorders that were cut off, and pipes, do not."""
+    place = 12
+    while place + 8 <= len(content):
+        name, size = struct.unpack_from("<4sI", content, place)
+        rest = len(content) - place - 8
+        if name == b"data" and content.startswith(b"RIFF") and (size == 0 or size > rest):
+            sizes = struct.pack("<4sI", b"RIFF", len(content) - 8), struct.pack("<I", rest)
+            return sizes[0] + content[8 : place + 4] + sizes[1] + content[place + 8 :]
+        if name == b"data":
+            break
+        place += 8 + size + size % 2
+    return content
 
 
 def full_scale(values: np.ndarray) -> np.ndarray:
