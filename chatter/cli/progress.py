@@ -81,9 +81,10 @@ class RunningWork:
             self._reports.append((now, done))
             self._compiled = False
         elif not self._reports:
-            # what is reported at once was finished before, by an earlier run
-            at_once = now - self._begun < _PACE
-            self._reports.append((now, done) if at_once else (self._begun, 0))
+            # what is reported at once was finished before, by an earlier run; the time before a
+            # report of nothing done went into preparing the parts
+            prepared = not done or now - self._begun < _PACE
+            self._reports.append((now, done) if prepared else (self._begun, 0))
         elif now - self._reports[-1][0] >= _PACE:
             self._reports.append((now, done))
         # the pace is that of late: parts of a search differ
@@ -171,7 +172,7 @@ class RunningWork:
     def _is_settled(self, total: float) -> bool:
         """Whether an estimate of the whole, s, is like one before it, or has had time to be."""
         now = self.elapsed
-        if now >= _LONG_ENOUGH:
+        if self._clock() - self._reports[0][0] >= _LONG_ENOUGH:
             return True
         before = self._estimate
         if before is not None and now - before[0] < _APART:

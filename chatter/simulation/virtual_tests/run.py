@@ -88,6 +88,8 @@ def run_machine(
         (record,),
     )
     done, interrupted = 0, False
+    # a long trajectory takes its time to plan, which is no pace of the steps
+    progress(done, total)
     try:
         while done < total:
             count = min(_STEPS_A_CHUNK, total - done)

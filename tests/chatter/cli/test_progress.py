@@ -86,6 +86,22 @@ def test_a_first_part_that_took_long_is_pace(clock):
     assert work.remaining() == pytest.approx(180.0)
 
 
+def test_the_time_of_preparing_is_no_pace(clock):
+    """A move of ten minutes was announced with two hours: planning it was counted as its steps."""
+    work = RunningWork("move", clock)
+    clock.now += 12.0
+    work(0, 600_000)
+    for done in range(1000, 6000, 1000):  # a thousand a second
+        clock.now += 1.0
+        work(done, 600_000)
+        assert work.remaining() == pytest.approx((600_000 - done) / 1000.0)
+    assert work.announcement() is None
+    clock.now += 2.0
+    work(7000, 600_000)
+    # 593 s are left, and 19 s are over
+    assert work.announcement() == "move: about 10 min in all; Ctrl-C ends it"
+
+
 def test_minutes_are_announced_once(clock):
     work = RunningWork("samples", clock)
     work(0, 100)
