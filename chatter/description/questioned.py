@@ -25,6 +25,8 @@ _PRESSURE = _Usual(50e6, 1e10, "MPa", 1e-6, "metals and plastics")
 _CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling cutters")
 _EDGE = _Usual(0.5e3, 500e3, "N/mm", 1e-3, "edges in metals and plastics")
 _RUNOUT = _Usual(0.0, 0.2e-3, "mm", 1e3, "tools in their holders")
+#: viscous coefficient C of C b/V; wide: below, nothing is felt beside the damping of any tool
+_PROCESS_DAMPING = _Usual(1e2, 1e8, "N/m", 1.0, "edges in metals")
 _DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
 #: diameters beyond which a depth of cut is asked about, and those that common flutes are long
 _DEEPEST, _COMMON_FLUTES = 8.0, 3.0
@@ -47,6 +49,9 @@ def questions(case: Case) -> list[str]:
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
     asked += _question_of_stiff_tool(case)
     asked += _questions_of_material(case)
+    if case.process_damping is not None and case.process_damping.coefficient:
+        given = case.process_damping.coefficient
+        asked += _question("process_damping.coefficient", given, _PROCESS_DAMPING)
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
         asked += _question("cutting speed", speed, _CUTTING_SPEED)

@@ -165,11 +165,25 @@ _OTHER_WORK = {
 }  # fmt: skip
 
 
+#: words for a way of milling that no mode is alone, and what there is to say of it
+_OTHER_MODES = {
+    ("plunge", "plunging", "plunge milling"):
+        "that feeds along the tool axis, of which nothing is computed: the feed is across it here",
+    ("ramp", "ramping", "helical", "helical interpolation", "pocket", "pocketing"):
+        'state the passes that it is made of: "slot", or "up" or "down" beside another pass',
+    ("side", "shoulder", "peripheral", "contour", "profile", "finishing", "roughing",
+     "half immersion"):
+        'the wall is on the side that "down" (climb) or "up" (conventional) says, the width of the '
+        "cut is radial_depth",
+}  # fmt: skip
+
+
 def _on_other_work(given: str, allowed: str) -> str:
     """What is to be said of a word for a tool or a process that has no kind here."""
-    if '"end mill"' not in allowed and '"slot"' not in allowed:
-        return ""
-    said = (text for words, text in _OTHER_WORK.items() if given.lower() in words)
+    known = {} if '"end mill"' not in allowed and '"slot"' not in allowed else dict(_OTHER_WORK)
+    if '"slot"' in allowed:
+        known |= _OTHER_MODES
+    said = (text for words, text in known.items() if given.lower() in words)
     return "".join(f"{text}; " for text in said)
 
 

@@ -13,6 +13,7 @@ from chatter.compile.inclined_axis import diameter_in_cut, inclined_engagement, 
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import to_digits
+from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.units import rpm
@@ -242,7 +243,14 @@ class StabilityCheck(NotebookResult):
         return [
             ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
             ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
+            *self._thickest_chip(),
         ]
+
+    def _thickest_chip(self) -> list[list[str]]:
+        """Thickest chip of the rigid cut of a straight edge; a corner makes it thinner."""
+        if not cutter_of(self.case).is_cylindrical:
+            return []
+        return [["thickest chip", f"{1e3 * thickest_chip(self.case):.3g} mm"]]
 
     def _engagement_of_inclined(self) -> list[list[str]]:
         case = self.case

@@ -2,6 +2,7 @@
 
 import pytest
 
+import chatter
 from chatter import InputError
 from tests.command_line import chatter_command
 from tests.first_use.shop import cut, written
@@ -25,6 +26,9 @@ from tests.first_use.shop import cut, written
         # 20 mm of deflection were allowed
         ("optimum.max_deflection=0.02", "0.02 (a bare number is in m) is out of range; it must be"),
         ("optimum.max_surface_error=12", "12 (a bare number is in m) is out of range; it must be"),
+        # allowed modes alone were listed
+        ("cut.mode=plunge", "that feeds along the tool axis, of which nothing is computed"),
+        ("cut.mode=shoulder", "the width of the cut is radial_depth; allowed are"),
     ],
 )
 def test_a_slip_is_said_at_its_own_key(setting, told, tmp_path):
@@ -52,3 +56,23 @@ def test_numbers_of_python_are_in_si():
     assert cut(optimum__min_tool_life=120).optimum.min_tool_life == 120.0
     with pytest.raises(InputError, match=r"at least 0\.02 kW"):
         cut(optimum__max_power=1.2)
+
+
+def test_a_process_damping_that_nothing_feels_is_asked_about():
+    """0.5 changed nothing, and nothing was said."""
+
+    def asked_of(coefficient):
+        notes = chatter.check(cut(process_damping__coefficient=coefficient)).notes
+        return [one for one in notes if "meant?" in one]
+
+    (asked,) = asked_of(0.5)
+    assert asked.endswith(
+        "process_damping.coefficient: is 0.5 N/m meant? edges in metals have 100 to 1e+08 N/m"
+    )
+    assert asked_of(2.5e5) == []
+
+
+def test_the_words_of_a_mode_are_not_those_of_a_kind_of_tool(tmp_path):
+    result = chatter_command("check", written(tmp_path), "--set", "tool.kind=roughing")
+    assert result.exit_code == 2
+    assert "radial_depth" not in result.stderr
