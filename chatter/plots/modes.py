@@ -12,6 +12,10 @@ from dynamics.identification.result import FrfModel, ModalFit
 #: FRFs side by side in one picture
 _MOST_COLUMNS = 4
 _CURVE_POINTS = 4000
+#: room above the poles for the legend, over the range of the axis
+_HEADROOM = 0.15
+#: colour of the FRFs behind the poles
+_BEHIND = "#BBBBBB"
 #: quantity of an FRF -> unit in pictures, factor from SI
 FRF_UNITS = {
     "receptance": ("um/N", 1e6),
@@ -106,16 +110,36 @@ def draw_phase(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
     style.finish(axes)
 
 
+def _draw_frfs_behind(axes: Axes, fit: ModalFit) -> Axes:
+    """Draw the magnitude of the FRFs behind the poles, with an axis of its own on the right."""
+    behind = axes.twinx()
+    quantity = fit.frfs[0].quantity
+    unit, factor = FRF_UNITS[quantity]
+    largest = 0.0
+    for number, frf in enumerate(fit.frfs):
+        inside = frf.as_quantity(quantity).band(fit.band.lowest, fit.band.highest)
+        magnitude = np.abs(inside.values) * factor
+        largest = max(largest, float(magnitude.max()))
+        behind.semilogy(
+            inside.frequency, magnitude, color=_BEHIND, linewidth=0.8,
+            label="measured FRF" if number == 0 else None,
+        )  # fmt: skip
+    # beyond four decades noise at antiresonances takes the room
+    lowest = max(behind.get_ylim()[0], 1e-4 * largest)
+    behind.set(ylim=(lowest, largest * (largest / lowest) ** _HEADROOM))
+    behind.set_ylabel(f"{quantity} [{unit}]", color=style.GREY)
+    behind.tick_params(axis="y", which="both", colors=style.GREY)
+    behind.grid(visible=False)
+    behind.set_zorder(0)
+    axes.set_zorder(1)
+    return behind
+
+
 def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
     """Draw the poles of all model orders over frequency, with the FRFs behind them."""
     figure = style.new_figure(8.0, 6.2)
     axes, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-    behind = axes.twinx()
-    for frf in fit.frfs:
-        behind.semilogy(frf.frequency, np.abs(frf.values), color="#BBBBBB", linewidth=0.8)
-    behind.set_yticks([])
-    behind.set_zorder(0)
-    axes.set_zorder(1)
+    behind = _draw_frfs_behind(axes, fit)
     axes.set_facecolor("none")
     for number, diagram in enumerate(fit.diagrams):
         for stable, marker, colour, label in (
@@ -142,5 +166,9 @@ def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
     style.finish(below)
     axes.set(ylabel="model order", title=f"{title}: stabilisation diagram, modes chosen in green")
     style.finish(axes)
-    axes.legend(fontsize=8, loc="upper right")
+    highest = max((int(one.order.max()) for one in fit.diagrams if one.order.size), default=1)
+    axes.set_ylim(0.0, highest * (1.0 + _HEADROOM))
+    drawn = [axes.get_legend_handles_labels(), behind.get_legend_handles_labels()]
+    handles, labels = ([*drawn[0][k], *drawn[1][k]] for k in range(2))
+    axes.legend(handles, labels, fontsize=8, loc="upper right", ncols=3)
     return figure
