@@ -17,6 +17,8 @@ class Computation(NamedTuple):
 
     run: Callable[[Progress], None]  # of a callable that may raise to give up
     may_be_superseded: bool
+    #: s for which nothing newer may come before it is begun: a slider that moves has come to rest
+    rest: float = 0.0
 
 
 class Computations:
@@ -49,6 +51,7 @@ class Computations:
         with self._changed:
             self._waiting = ()
             self._cancelled = self._running
+            self._changed.notify_all()
 
     def end(self) -> None:
         """Give up everything, and the thread with it."""
@@ -68,8 +71,11 @@ class Computations:
                 self._changed.wait_for(lambda: bool(self._waiting) or self._ended)
                 if self._ended:
                     return
-                step, *rest = self._waiting
-                self._waiting, later = (), tuple(rest)
+                steps = self._waiting
+                step, *others = steps
+                if step.rest > 0.0 and self._changed.wait_for(self._unlike(steps), step.rest):
+                    continue
+                self._waiting, later = (), tuple(others)
                 self._running, self._cancelled = True, False
             self._run(step)
             with self._changed:
@@ -77,6 +83,10 @@ class Computations:
                 if not self._waiting and not self._cancelled:
                     self._waiting = later
                 self._changed.notify_all()
+
+    def _unlike(self, steps: tuple[Computation, ...]) -> Callable[[], bool]:
+        """Whether other steps wait by now, or none."""
+        return lambda: self._ended or self._waiting is not steps
 
     def _run(self, step: Computation) -> None:
         def go_on(*_: object) -> None:

@@ -20,6 +20,8 @@ from chatter.description.case import Case
 from chatter.description.progress import Progress
 
 _STEPS = 400
+#: s after the last move of a slider until the fine diagram is begun: it would hold up the next move
+_REST = 0.15
 #: pixels
 _WIDTH, _WIDTH_BESIDE = 820, 620
 _HEADING = ("spindle_speed [rpm]", "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation")
@@ -150,7 +152,7 @@ class StabilityView:
         self.same_call.object = self._same_call(values)
         self.computations.start(
             Computation(lambda go_on: self._compute(values, "coarse", go_on), False),
-            Computation(lambda go_on: self._compute(values, "fine", go_on), True),
+            Computation(lambda go_on: self._compute(values, "fine", go_on), True, _REST),
         )
 
     def simulate(self, speed: float, depth: float) -> None:

@@ -7,6 +7,7 @@ import http.client
 import re
 import shutil
 import threading
+import time
 
 import panel as pn
 import pytest
@@ -119,6 +120,38 @@ def test_a_crash_is_shown_and_the_next_computation_runs():
     assert "ZeroDivisionError" in shown[0]
     computations.start(Computation(lambda go_on: done.set(), False))
     assert done.wait(PATIENCE)
+
+
+def test_what_waits_for_rest_is_begun_once_nothing_newer_comes():
+    """A fine diagram that began between two moves of a slider held the second one up."""
+    begun = []
+    computations = Computations(begun.append)
+    for move in range(3):
+        seen = threading.Event()
+        computations.start(
+            Computation(
+                lambda go_on, m=move, s=seen: (begun.append(f"coarse {m}"), s.set()), False
+            ),
+            Computation(lambda go_on, m=move: begun.append(f"fine {m}"), True, 0.5),
+        )
+        assert seen.wait(PATIENCE)
+    assert computations.wait(PATIENCE)
+    assert begun == ["coarse 0", "coarse 1", "coarse 2", "fine 2"]
+
+
+def test_what_waits_for_rest_can_be_cancelled():
+    begun, seen = [], threading.Event()
+    computations = Computations(begun.append)
+    computations.start(
+        Computation(lambda go_on: seen.set(), False),
+        Computation(lambda go_on: begun.append("fine"), True, 60.0),
+    )
+    assert seen.wait(PATIENCE)
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline and not computations.wait(0.05):
+        computations.cancel()
+    assert begun in ([], ["cancelled"])
+    computations.end()
 
 
 def test_cancel_ends_a_computation():
