@@ -77,7 +77,8 @@ class StickOut(Section):
 
     @model_validator(mode="after")
     def _check_order(self) -> StickOut:
-        text = f"{self.longest:g} m; it must not be below the shortest, {self.shortest:g} m"
+        longest, shortest = 1e3 * self.longest, 1e3 * self.shortest
+        text = f"{longest:.4g} mm; it must not be below the shortest, {shortest:.4g} mm"
         raise_if_any([("longest", text)] if self.longest < self.shortest else [])
         return self
 

@@ -12,13 +12,19 @@ from chatter.description.errors import InputError
 from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
+from chatter.io.headings import named
 from chatter.io.signals import read_signals
+from chatter.io.stated_columns import read_signal_table
+from chatter.io.table import split_heading
 from chatter.learning.records_of_cuts import ANGLE, MAGNITUDE, with_multipliers
+from dynamics.frf.container import MeasurementError
 
 #: what of a test can be compared with a prediction
 READINGS = ("stable", "chatter_frequency", "spindle_power", MAGNITUDE, ANGLE)
 #: number of the test in the order of its table, as a column of every run
 TEST = "test"
+#: diameters of the tool beyond which no cut is
+_MOST_DIAMETERS = 20.0
 _NEEDED = ("spindle_speed", "axial_depth")
 
 
@@ -39,9 +45,24 @@ def read_cuts(path: str | Path, case: Case) -> Measurement:
                 f'{path}: kind: "{measurement.kind}" is none to learn from; "stability" is'
             )
     else:
+        _require_unit_of_speed(path)
         run = Run(path.name, {}, read_signals(path))
         measurement = Measurement("stability", path.stem, path.parent, case, (run,))
     return with_one_run_a_reading(measurement)
+
+
+def _require_unit_of_speed(path: Path) -> None:
+    """Ask for the unit of a spindle speed: a bare number would be in rad/s."""
+    try:
+        headings = [column.heading for column in read_signal_table(path).columns]
+    except MeasurementError as error:
+        raise InputError(str(error)) from error
+    for heading in headings:
+        if not split_heading(heading)[1] and named(path, heading)[0] == "spindle_speed":
+            raise InputError(
+                f"{path}: column {heading} has no unit; write it in the heading, such as "
+                '"spindle_speed [rpm]"'
+            )
 
 
 def with_one_run_a_reading(measurement: Measurement) -> Measurement:
@@ -57,6 +78,7 @@ def with_one_run_a_reading(measurement: Measurement) -> Measurement:
         if not np.all(np.isfinite(values) & (values > 0.0)):
             row = int(np.argmin(np.isfinite(values) & (values > 0.0))) + 1
             raise InputError(f"{where}: {name}, row {row}: {values[row - 1]:g} is not above 0")
+    _refuse_depths_in_metres(where, run, measurement.case)
     run = with_multipliers(run, measurement.folder, measurement.case)
     numbered = {**run.signals, TEST: np.arange(run.signals[_NEEDED[0]].size, dtype=float)}
     run = replace(run, signals=numbered)
@@ -64,6 +86,18 @@ def with_one_run_a_reading(measurement: Measurement) -> Measurement:
     if not runs:
         raise InputError(f"{where}: there is no column {', '.join(READINGS)} to learn from")
     return measurement.with_runs(runs)
+
+
+def _refuse_depths_in_metres(where: Path, run: Run, case: Case) -> None:
+    """Refuse a depth that no tool cuts: of a column without a unit it is in m."""
+    depths, diameter = run.signals["axial_depth"], case.tool.diameter
+    row = int(np.argmax(depths))
+    if depths[row] > _MOST_DIAMETERS * diameter:
+        raise InputError(
+            f"{where}: axial_depth, row {row + 1}: {1e3 * depths[row]:.4g} mm are "
+            f"{depths[row] / diameter:.3g} diameters of the tool; the unit stands in the heading, "
+            'such as "axial_depth [mm]"'
+        )
 
 
 def _of_reading(run: Run, name: str, measurement: Measurement) -> Run | None:

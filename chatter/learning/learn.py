@@ -332,7 +332,9 @@ def _ranges(
 
 def _depths(most: float, limits: Array) -> Array:
     """Depths of the diagram down to one, m, in equal steps or ratios, as limits (n,), m, ask."""
-    lowest = _BELOW_LOWEST * float(limits.min()) if limits.size else most
+    # a limit below all depths that were looked at is not known: it is zero there
+    known = limits[limits > 0.0]
+    lowest = _BELOW_LOWEST * float(known.min()) if known.size else most
     if most / _DEPTHS > lowest:
         return np.geomspace(lowest, most, _DEPTHS)
     return np.linspace(0.0, most, _DEPTHS + 1)[1:]
