@@ -225,7 +225,7 @@ def test_command_writes_what_it_says(tmp_path):
         ('name = "HSK-A63 shrink 12"', 'name = "HSK-A63 shrink 16"', "bore"),
         ('name = "HSK-A63 shrink 12"', 'name = "SK40 shrink 12"', "taper"),
         ('longest = "44 mm"', 'longest = "70 mm"', "47 mm at most"),
-        ('longest = "44 mm"', 'longest = "20 mm"', "20 mm; it must not be below the shortest, 30 mm"),
+        ('longest = "44 mm"', 'longest = "20 mm"', "20 mm; it must not be below the shortest"),
         ('shortest = "30 mm"', 'shortest = "20 mm"', "26 mm"),
         ('name = "generic HSK-A63"', 'frf = "tap.csv"', "cross_frf"),
         ('[tool]\nname', '[tool]\nnmae', "nmae"),

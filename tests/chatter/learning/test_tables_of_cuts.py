@@ -1,4 +1,4 @@
-"""Tables of cutting tests: units that are not said are asked for, not taken for metres and rad/s."""
+"""Tables of cutting tests: a unit that is not said is asked for, not taken for m and rad/s."""
 
 import numpy as np
 import pytest
