@@ -135,14 +135,20 @@ def _surface(summary: dict, edge_angle: float) -> list[str]:
     name = "wall" if edge_angle > _UPRIGHT else f"shoulder at {edge_angle:.3g} deg"
     lines = []
     if wall is not None:
-        error = f"surface location error {wall:.3g} um (positive: too much removed)"
+        error = f"surface location error {wall:.3g} um (too {_removed(wall)} removed)"
         lines.append(f"{name}: {error}{_roughness(rough['wall'])}")
     if floor is not None:
-        lines.append(f"floor: {floor:.3g} um too deep{_roughness(rough['floor'])}")
+        depth = f"{abs(floor):.3g} um too {'high' if floor < 0.0 else 'deep'}"
+        lines.append(f"floor: {depth}{_roughness(rough['floor'])}")
     scallops = summary.get("scallop_height_um")
     if scallops is not None:
         lines.append(f"between passes: scallops of {scallops:.3g} um")
     return lines if edge_angle > _UPRIGHT else lines[::-1]
+
+
+def _removed(error: float) -> str:
+    """What a surface location error, positive into the work, says of the work removed."""
+    return "little" if error < 0.0 else "much"
 
 
 def _roughness(heights: dict) -> str:

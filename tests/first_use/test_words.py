@@ -281,3 +281,25 @@ def test_check_says_which_method_the_verdict_is_by_where_limits_of_two_differ():
     assert not any("would say" in one for one in alike.notes)
     own = chatter.check(cut(cut__axial_depth="0.5 mm"), method="collocation")
     assert ["spectral radius", f"{own.spectral_radius:.4g} (below 1: stable)"] in own.rows()
+
+
+@pytest.mark.parametrize(
+    ("wall", "floor", "told"),
+    [
+        # "floor: -15.5 um too deep"
+        (-4.0, -15.5, ("error -4 um (too little removed)", "floor: 15.5 um too high")),
+        (4.0, 15.5, ("error 4 um (too much removed)", "floor: 15.5 um too deep")),
+    ],
+)
+def test_the_sign_of_an_error_of_the_surface_is_in_its_words(wall, floor, told):
+    from chatter.cli.simulate import _surface
+
+    nothing = {"Ra_um": None}
+    summary = {
+        "surface_location_error_um": wall,
+        "surface_location": {"floor_um": floor},
+        "roughness": {"wall": nothing, "floor": nothing},
+    }
+    lines = _surface(summary, 90.0)
+    for line, words in zip(lines, told, strict=True):
+        assert line.endswith(words)
