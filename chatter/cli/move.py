@@ -7,6 +7,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
+from chatter.description.formatting import to_digits
 from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
 
 
@@ -54,9 +55,9 @@ def _print_errors(summaries: dict) -> None:
         rows = [
             [
                 axis,
-                f"{errors['motor_error_um']:.4g}",
-                f"{errors['tracking_error_um']:.4g}",
-                f"{errors['tool_error_um']:.4g}" if "tool_error_um" in errors else "",
+                to_digits(errors["motor_error_um"], 4),
+                to_digits(errors["tracking_error_um"], 4),
+                to_digits(errors["tool_error_um"], 4) if "tool_error_um" in errors else "",
                 f"{errors['effort']:.4g} {errors['effort_unit'].replace('*', ' ')}",
             ]
             for axis, errors in summary["axes"].items()

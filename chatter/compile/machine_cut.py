@@ -216,6 +216,12 @@ def _spindle_axis(case: Case, file: MachineFile, machine: Machine) -> str | None
                 f'{case.name}: structure.spindle: axis "{named}" is not under control in '
                 f"{file.name}; there are {known}"
             )
+        if not file.axis[named].drive.is_rotary:
+            turn = [name for name in sorted(controlled) if file.axis[name].drive.is_rotary]
+            raise InputError(
+                f'{case.name}: structure.spindle: axis "{named}" of {file.name} does not turn; '
+                f"{', '.join(turn) or 'none'} would"
+            )
         return named
     turning = [
         name

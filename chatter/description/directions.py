@@ -1,4 +1,4 @@
-"""Directions: three numbers, or the name of an axis."""
+"""Directions: three numbers, or the name of an axis, which "-" turns round."""
 
 import math
 from typing import Annotated, Any
@@ -10,7 +10,10 @@ from chatter.description.formatting import formatted
 #: a unit vector may miss unit length by this much before it is refused rather than normalised
 _UNIT_TOLERANCE = 0.01
 _SHORTEST = 1e-9
-_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_AXES = {
+    "x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0),
+    "-x": (-1.0, 0.0, 0.0), "-y": (0.0, -1.0, 0.0), "-z": (0.0, 0.0, -1.0),
+}  # fmt: skip
 _SCHEMA = WithJsonSchema(
     {
         "anyOf": [

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from chatter.description.formatting import to_digits
+
 if TYPE_CHECKING:
     from chatter.description.case import Case
 
@@ -27,6 +29,7 @@ _EDGE = _Usual(0.5e3, 500e3, "N/mm", 1e-3, "edges in metals and plastics")
 _RUNOUT = _Usual(0.0, 0.2e-3, "mm", 1e3, "tools in their holders")
 #: viscous coefficient C of C b/V; wide: below, nothing is felt beside the damping of any tool
 _PROCESS_DAMPING = _Usual(1e2, 1e8, "N/m", 1.0, "edges in metals")
+_AMPLITUDE = _Usual(1e-9, 0.2e-3, "um", 1e6, "axes that vibrate in a cut")
 _DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
 #: diameters beyond which a depth of cut is asked about, and those that common flutes are long
 _DEEPEST, _COMMON_FLUTES = 8.0, 3.0
@@ -47,6 +50,9 @@ def questions(case: Case) -> list[str]:
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
         asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS)
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
+    if case.structure is not None and case.structure.friction_amplitude:
+        given = case.structure.friction_amplitude
+        asked += _question("structure.friction_amplitude", given, _AMPLITUDE)
     asked += _question_of_stiff_tool(case)
     asked += _questions_of_material(case)
     if case.process_damping is not None and case.process_damping.coefficient:
@@ -169,7 +175,7 @@ def _question(name: str, value: float, usual: _Usual) -> list[str]:
     if usual.low <= value <= usual.high:
         return []
     ends = f"{usual.low * usual.factor:g} to {usual.high * usual.factor:g} {usual.unit}".rstrip()
-    given = f"{value * usual.factor:.3g} {usual.unit}".rstrip()
+    given = f"{to_digits(value * usual.factor, 3)} {usual.unit}".rstrip()
     return [f"{name}: is {given} meant? {usual.of} have {ends}"]
 
 

@@ -108,3 +108,27 @@ def test_what_lobes_call_stable_at_any_speed_check_calls_stable(case):
     diagram = chatter.lobes(few)
     assert 0.0 < diagram.lowest_depth < diagram.lowest.critical_depth
     assert diagram.lowest_depth <= chatter.check(few).lowest_depth
+
+
+def test_a_direction_against_an_axis_has_a_name(case):
+    assert case.patch({"structure.feed": "-x"}).structure.feed == (-1.0, 0.0, 0.0)
+    assert case.patch({"structure.feed": "-y"}).structure.feed == (0.0, -1.0, 0.0)
+
+
+def test_an_amplitude_of_millimetres_is_asked_about(case):
+    notes = chatter.check(case.patch({"structure.friction_amplitude": "5 mm"})).notes
+    assert any("structure.friction_amplitude: is 5000 um meant?" in one for one in notes)
+
+
+def test_errors_of_a_move_are_written_without_exponents(capsys):
+    """ "2e+04" um stood in the table."""
+    from chatter.cli.move import _print_errors
+
+    errors = {
+        "motor_error_um": 20000.0, "tracking_error_um": 20000.0, "effort": 1.0,
+        "effort_unit": "N*m",
+    }  # fmt: skip
+    _print_errors({"far": {"axes": {"Y": errors}, "contour_error_um": None}})
+    printed = capsys.readouterr().out
+    assert "20000" in printed
+    assert "e+" not in printed

@@ -24,6 +24,8 @@ def refused(folder, machine, structure=None, **given):
     [
         ({"feed": [0, 0, 1]}, ["structure.feed", "perpendicular to the tool axis"]),
         ({"spindle": "Q"}, ["structure.spindle", '"Q"', "S", "X"]),
+        # an axis that travels turned the tool
+        ({"spindle": "X"}, ["structure.spindle", '"X"', "does not turn", "S would"]),
         ({"tool_axis": [0, 1, 0]}, ["structure.tool_axis", "spindle S"]),
         ({"condition": {"Q": "brake"}}, ["structure.condition", '"Q"', "X"]),
         ({"condition": {"X": "brake"}}, ["brake"]),
