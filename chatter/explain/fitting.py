@@ -83,6 +83,14 @@ class Parameter:
         """Change of the value with a size, at a distance from the start."""
         return self.size
 
+    def moved(self, value: float, change: float) -> float:
+        """Value that is so many sizes away from another, within the bounds."""
+        return float(np.clip(self.value(self.counted(value) + change), self.lower, self.upper))
+
+    def slope(self, value: float) -> float:
+        """Change of the value with a size, where it is so large."""
+        return self.per_size(self.counted(value))
+
 
 @dataclass(frozen=True)
 class KnownByFactor(Parameter):
@@ -131,6 +139,11 @@ class Fit:
         return float(self.residuals @ self.residuals)
 
     @property
+    def slopes(self) -> Vector:
+        """Changes (p,) of the values with a size of each, SI."""
+        return _slopes(self.parameters, self.values)
+
+    @property
     def by_name(self) -> dict[str, float]:
         """Values by name."""
         return {one.name: float(v) for one, v in zip(self.parameters, self.values, strict=True)}
@@ -148,7 +161,7 @@ class Fit:
     def log_prior(self) -> float:
         """Logarithm of the prior at the solution, over that at the start."""
         moved = [
-            one.weight * (value - one.start) / one.size
+            one.weight * one.counted(float(value))
             for one, value in zip(self.parameters, self.values, strict=True)
         ]
         return -0.5 * float(np.dot(moved, moved))
@@ -163,7 +176,7 @@ class Fit:
             return 0.0
         larger = max(1.0, self.cost / max(self.residuals.size, 1))
         widths = np.array([1.0 if one.prior else FREE_SIZES for one in self.parameters])
-        widths *= np.array([one.size for one in self.parameters])
+        widths *= self.slopes
         spread = np.linalg.eigvalsh(self.covariance * larger / np.outer(widths, widths))
         return 0.5 * float(np.sum(np.log(np.clip(spread, 1e-12, 1.0))))
 
@@ -191,8 +204,7 @@ class _Scaled:
         jacobian: Matrix | None,
     ) -> None:
         self.residuals_of, self.coarse_of = residuals, coarse or residuals
-        self.size = np.array([one.size for one in parameters])
-        self.origin = np.array([one.start for one in parameters])
+        self.parameters = parameters
         self.lower = self.scaled(np.array([one.lower for one in parameters]))
         self.upper = self.scaled(np.array([one.upper for one in parameters]))
         self.held = np.array([one.weight for one in parameters]) ** 2
@@ -202,11 +214,15 @@ class _Scaled:
 
     def scaled(self, values: Vector) -> Vector:
         """Parameters as counted in the search."""
-        return (values - self.origin) / self.size
+        return np.array(
+            [one.counted(float(v)) for one, v in zip(self.parameters, values, strict=True)]
+        )
 
     def values(self, scaled: Vector) -> Vector:
         """Parameters in SI."""
-        return self.origin + scaled * self.size
+        return np.array(
+            [one.value(float(v)) for one, v in zip(self.parameters, scaled, strict=True)]
+        )
 
     def begin(self, scaled: Vector) -> None:
         """Go to where a search begins."""
@@ -353,13 +369,16 @@ def _followed(problem: _Scaled, most: int, negligible: Callable[[], float]) -> i
 def _fit_at(problem: _Scaled, parameters: Sequence[Parameter]) -> Fit:
     """Fit with the covariance by the Jacobian that is known."""
     inverse = np.linalg.pinv(problem.normal, hermitian=True)
+    values = problem.values(problem.at)
+    slopes = _slopes(parameters, values)
     return Fit(
-        tuple(parameters),
-        problem.values(problem.at),
-        inverse * np.outer(problem.size, problem.size),
-        problem.known,
-        problem.now,
+        tuple(parameters), values, inverse * np.outer(slopes, slopes), problem.known, problem.now
     )
+
+
+def _slopes(parameters: Sequence[Parameter], values: Vector) -> Vector:
+    """Changes (p,) of values with a size of each."""
+    return np.array([one.slope(float(v)) for one, v in zip(parameters, values, strict=True)])
 
 
 def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
@@ -381,8 +400,7 @@ def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
         ]
     )
     pulls -= pulls.mean(axis=0)
-    size = np.array([one.size for one in fit.parameters])
-    inverse = fit.covariance / np.outer(size, size)
+    inverse = fit.covariance / np.outer(fit.slopes, fit.slopes)
     spread = inverse @ (pulls.T @ pulls) @ inverse * groups / (groups - 1)
     wider = scipy.stats.t.ppf(0.975, groups - 1) / 1.96
     own = np.maximum(np.diag(inverse), 1e-300)
@@ -409,6 +427,9 @@ TOLERANCES = {
     "coulomb_friction": 0.10,
 }
 _OTHERS = 0.05
+#: last keys of paths whose values are known by a factor: next to no damping is not as near to what
+#: was declared as twice of it
+_KNOWN_BY_FACTOR = ("damping",)
 
 
 def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Parameter]:
@@ -433,7 +454,8 @@ def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Paramete
             deviation = TOLERANCES.get(key, _OTHERS) * abs(value)
         if deviation > 0.0:
             lowest = 0.02 * value if value > 0.0 else -np.inf
-            found.append(Parameter(path, value, deviation, lower=lowest))
+            kind = KnownByFactor if key in _KNOWN_BY_FACTOR and value > 0.0 else Parameter
+            found.append(kind(path, value, deviation, lower=lowest))
     return found
 
 
@@ -441,7 +463,6 @@ def within_reach(parameters: Sequence[Parameter]) -> list[Parameter]:
     """Declared values with bounds within which they are refitted."""
     found = []
     for one in parameters:
-        farthest = REFITTED_WITHIN * one.size
-        lowest = max(one.lower, one.start - farthest)
-        found.append(replace(one, lower=lowest, upper=one.start + farthest))
+        lowest = max(one.lower, one.value(-REFITTED_WITHIN))
+        found.append(replace(one, lower=lowest, upper=one.value(REFITTED_WITHIN)))
     return found

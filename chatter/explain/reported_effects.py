@@ -90,7 +90,7 @@ def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
 
 def _undetermined(fit: Fit, indices: list[int]) -> list[Vector]:
     """Combinations (SI) of some parameters that are held by nothing but what holds free ones."""
-    size = np.array([fit.parameters[index].size for index in indices])
+    size = fit.slopes[indices]
     spread = fit.covariance[np.ix_(indices, indices)] / np.outer(size, size)
     squares, directions = np.linalg.eigh(spread)
     found = [

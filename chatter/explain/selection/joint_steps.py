@@ -95,6 +95,5 @@ class _Model:
                 one.name: self.steps[index].begin[one.name] for one in self.steps[index].added
             }
         for one, change in zip(parameters, step, strict=True):
-            moved = values[one.name] + float(change) * one.size
-            values[one.name] = float(np.clip(moved, one.lower, one.upper))
+            values[one.name] = one.moved(values[one.name], float(change))
         return self.now.cost - left, values

@@ -149,7 +149,7 @@ class _Secants:
             return secant[:, None]
         changes = []
         for one in self.amounts:
-            moved = {**values, one.name: values[one.name] + _DIFFERENCE * one.size}
+            moved = {**values, one.name: one.moved(values[one.name], _DIFFERENCE)}
             change = self.trial.residuals(moved, self.runs) - self.now.residuals
             changes.append(change / _DIFFERENCE)
         return np.column_stack(changes)
@@ -189,11 +189,10 @@ def _columns(
     """Differences (n, k) of the residuals by the parameters of an effect, per size."""
     columns = []
     for one in added:
-        step = _DIFFERENCE * one.size
-        if values[one.name] + step > one.upper:
-            step = -step
-        moved = trial.residuals({**values, one.name: values[one.name] + step}, runs)
-        columns.append((moved - residual) / (step / one.size))
+        at = one.counted(values[one.name])
+        step = _DIFFERENCE if at + _DIFFERENCE <= one.counted(one.upper) else -_DIFFERENCE
+        moved = trial.residuals({**values, one.name: one.value(at + step)}, runs)
+        columns.append((moved - residual) / step)
     return np.column_stack(columns) if columns else np.empty((residual.size, 0))
 
 
@@ -244,9 +243,7 @@ def _shortened(
     """Sum of squares and values after the longest part of a step that lowers it; none: as begun."""
     for fraction in _FRACTIONS:
         moved = {
-            one.name: float(
-                np.clip(values[one.name] + fraction * change * one.size, one.lower, one.upper)
-            )
+            one.name: one.moved(values[one.name], fraction * float(change))
             for one, change in zip(parameters, step, strict=True)
         }
         cost = trial.cost(moved, runs)
