@@ -44,7 +44,7 @@ _UNDETERMINED = 1e-14
 _LEAST_OF_PROMISE, _LEAST_HOPED = 0.5, 1.0
 #: steps tried at the most, without those of finite differences; where rough will do; those that
 #: fail one after the other, by new differences
-_MOST_STEPS, _MOST_ROUGH_STEPS, _MOST_FAILED = 30, 8, 2
+_MOST_STEPS, _MOST_ROUGH_STEPS, _MOST_FAILED = 30, 8, 6
 #: standard deviation, in sizes, of a parameter that has no declared value and begins at nothing:
 #: of values that the data do not tell apart, the smallest
 FREE_SIZES = 30.0

@@ -1,5 +1,6 @@
 """Effects of the structure: a frequency that shifts, contact, dry friction."""
 
+import itertools
 import math
 
 import numpy as np
@@ -16,6 +17,8 @@ _MOST_MODES = 4
 _TABLE_SPEEDS, _LEAST_FREQUENCY = np.linspace(0.0, 3.0, 61), 0.05
 #: force of a typical cut where none was measured, N
 _TYPICAL_FORCE = 100.0
+#: speeds that a shift needs, and share by which they differ: a nominal speed is found to the rpm
+_LEAST_SPEEDS, _APART = 3, 0.01
 
 
 def stiffness_of(frequency: float, mass: float) -> float:
@@ -27,6 +30,17 @@ def has_modes(measurement: Measurement) -> bool:
     """Whether the declared structure is one of modes."""
     case = measurement.case
     return case.structure is not None and bool(case.structure.mode)
+
+
+def _speeds_apart(measurement: Measurement) -> int:
+    """Number of spindle speeds of the runs that are speeds of their own."""
+    declared = measurement.case.cut
+    own = (run.overrides.get("cut.spindle_speed") for run in measurement.runs)
+    speeds = sorted(
+        float(declared.spindle_speed if speed is None and declared is not None else speed or 0.0)
+        for speed in own
+    )
+    return 1 + sum(b - a > _APART * b for a, b in itertools.pairwise(speeds))
 
 
 class ModeShift(Effect):
@@ -50,8 +64,9 @@ class ModeShift(Effect):
 
     def applies(self, measurement: Measurement) -> bool:
         """Of modes at several speeds."""
-        speeds = {str(run.overrides.get("cut.spindle_speed")) for run in measurement.runs}
-        return has_modes(measurement) and ("stability" in measurement.kinds or len(speeds) > 2)
+        return has_modes(measurement) and (
+            "stability" in measurement.kinds or _speeds_apart(measurement) >= _LEAST_SPEEDS
+        )
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Relative change of the frequencies with the speed: one in a thousand at 1000 rpm."""
