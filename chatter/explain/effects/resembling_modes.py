@@ -14,8 +14,8 @@ from chatter.simulation.simulate import through_resonance
 
 Array = NDArray[np.float64]
 
-#: natural frequencies tried, from and to which share of the known ones, and damping ratios
-_TRIED, _LOWEST, _HIGHEST = 80, 0.3, 2.5
+#: natural frequencies tried, and damping ratios
+_TRIED = 80
 _DAMPING = (0.01, 0.03, 0.08)
 #: modes that are proposed, further apart than a share of their frequency
 _PROPOSED, _APART = 2, 0.15
@@ -26,15 +26,15 @@ _PRODUCTS = {"x": 0, "xx": 0, "xy": 1, "yx": 1, "y": 2, "yy": 2}
 
 
 def resembling_modes(
-    measurement: Measurement, predicted: Mapping[str, Signals]
+    measurement: Measurement, predicted: Mapping[str, Signals], sought: tuple[float, float]
 ) -> list[dict[str, float]]:
     """Modes whose answer to the forces takes most of the residual of motions or FRFs away.
 
-    Predicted signals are by run. A mode of compliance c along a unit vector d moves the tool by
-    c d (d . q) where q is the force through an oscillator of unit stiffness: linear in the three
-    products c dx dx, c dx dy and c dy dy, which are fitted. What the motion changes in the chip is
-    left to the simulation. An FRF shows the product of its directions under a unit force. None
-    where there are neither FRFs nor displacements from rest.
+    Predicted signals are by run; modes are sought between two frequencies, Hz. A mode of compliance
+    c along a unit vector d moves the tool by c d (d . q) where q is the force through an oscillator
+    of unit stiffness: linear in the three products c dx dx, c dx dy and c dy dy, which are fitted.
+    What the motion changes in the chip is left to the simulation. An FRF shows the product of its
+    directions under a unit force. None where there are neither FRFs nor displacements from rest.
     """
     if not predicted:
         return []
@@ -46,10 +46,9 @@ def resembling_modes(
     parts += [_Response(run, predicted[run.name]) for run in measurement.runs if _responds(run)]
     if not parts:
         return []
-    known = sorted(mode.frequency for mode in measurement.case.structure.mode)
-    highest = min([_HIGHEST * known[-1], *(part.highest for part in parts)])
+    highest = min([sought[1], *(part.highest for part in parts)])
     found = []
-    for frequency in np.geomspace(_LOWEST * known[0], highest, _TRIED):
+    for frequency in np.geomspace(sought[0], highest, _TRIED):
         for damping in _DAMPING:
             gain, products = _best_products(parts, float(frequency), damping)
             size, vectors = np.linalg.eigh(products)

@@ -18,6 +18,10 @@ from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
 from chatter.explain.fitting import Parameter, with_priors, within_reach
+from chatter.explain.kinds.axial_force import (
+    note_of_axial_coefficients,
+    undeclared_axial_coefficients,
+)
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.anti_alias_filter import with_filter_by
@@ -112,10 +116,10 @@ class Milling(Kind):
         if record is None or record.begins == REST:
             record, notes = beginning_of(measurement, record)
         if record is None:
-            return measurement, notes
+            return measurement, [*notes, *note_of_axial_coefficients(measurement)]
         make = settled_records if record.is_settled_only else from_rest_records
         found, new = make(measurement, record)
-        return found, [*notes, *new]
+        return found, [*notes, *new, *note_of_axial_coefficients(found)]
 
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement whose runs, where they are few, are judged in parts."""
@@ -161,12 +165,13 @@ class Milling(Kind):
         return {**found, **self.known_noise(run)}
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Cutting coefficients and modal parameters."""
+        """Cutting coefficients and modal parameters, axial ones though none is declared."""
         paths = cutting_paths(measurement.case, ("Ktc", "Krc", "Kac", "Kte", "Kre", "Kae"))
         runout = measurement.case.tool.runout
         if runout is not None and runout.offset:
             paths.append("tool.runout.offset")
-        return within_reach(with_priors(measurement, paths))
+        declared = within_reach(with_priors(measurement, paths))
+        return [*declared, *undeclared_axial_coefficients(measurement)]
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """Cuts of the runs."""

@@ -31,6 +31,7 @@ from chatter.explain.selection.candidates import (
 from chatter.explain.selection.cheaper_runs import screened_candidates
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
+from chatter.explain.selection.other_starts import fit_from_elsewhere
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split, split_runs
@@ -85,7 +86,7 @@ def gone_on(begin: Path, stage: Stage, split: Split, progress: Progress) -> Path
         stages.append(stage)
         values = stage.best.fit.by_name
         problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
-        now = problem.fit(split.fitted, values)
+        now = fit_from_elsewhere(problem, problem.fit(split.fitted, values), split)
         path = Path(stages, problem, now)
         if len(stages) == MOST_EFFECTS or path.over_noise(split.holdout) < NO_RESIDUAL:
             break

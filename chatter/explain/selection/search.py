@@ -17,6 +17,7 @@ from chatter.explain.selection.established import (
     reaches_nothing,
     stages_of_kept_effects,
 )
+from chatter.explain.selection.other_starts import fit_from_elsewhere
 from chatter.explain.selection.path import Path, best_path, filtered, gone_on, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
@@ -129,6 +130,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     helping: list[Stage] = []
     if path.stages and not is_at_noise(path.problem, final):
         path, helping = established_alone(path, split)
+        path = path._replace(now=fit_from_elsewhere(path.problem, path.now, split))
         final = _of_what_is_left(path)
     elif path.stages and reaches_nothing(path, final) is not None:
         path, final = _without_nothing(path, final, split)

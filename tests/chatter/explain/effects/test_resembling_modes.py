@@ -20,6 +20,8 @@ mass = "60 kg"
 direction = [1, 0, 0]
 """
 LINES = np.arange(10.0, 500.0, 0.5)
+#: frequencies between which a mode is sought, Hz
+SOUGHT = (60.0, 700.0)
 #: natural frequency, Hz, damping ratio, compliance, m/N, and direction, rad, of the missing mode
 MISSING = (341.0, 0.03, 4e-9, 0.6)
 
@@ -46,7 +48,7 @@ def measured(tmp_path):
 
 def test_the_mode_that_is_missing_is_proposed(measured):
     nothing = {"real": np.zeros(LINES.size), "imag": np.zeros(LINES.size)}
-    first = resembling_modes(measured, {run.name: nothing for run in measured.runs})[0]
+    first = resembling_modes(measured, {run.name: nothing for run in measured.runs}, SOUGHT)[0]
     frequency, damping, compliance, angle = MISSING
     # the frequencies tried are five percent apart
     assert first["frequency"] == pytest.approx(frequency, rel=0.03)
@@ -59,5 +61,5 @@ def test_no_mode_is_sought_beyond_the_lines_that_were_measured(measured):
     frequency = MissingMode().parameters(measured)[0]
     assert (frequency.lower, frequency.upper) == (10.0, LINES[-1])
     far = {"real": np.full(LINES.size, -1e-10), "imag": np.zeros(LINES.size)}
-    found = resembling_modes(measured, {run.name: far for run in measured.runs})
+    found = resembling_modes(measured, {run.name: far for run in measured.runs}, SOUGHT)
     assert all(one["frequency"] <= LINES[-1] for one in found)
