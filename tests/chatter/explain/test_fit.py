@@ -1,0 +1,102 @@
+"""Least squares with priors: steps that fail, values known by a factor, starts elsewhere."""
+
+import math
+
+import numpy as np
+import pytest
+
+from chatter.description.case import loads
+from chatter.explain.fitting import KnownByFactor, Parameter, fit, with_priors
+from chatter.explain.kinds.kind import Kind
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prediction import Predictions
+from chatter.explain.selection.other_starts import fit_from_elsewhere
+from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.split import split_runs
+
+TIME = np.arange(0.0, 2.0, 1e-3)
+#: frequency, Hz, that is declared, its standard deviation, and what it is
+DECLARED, DEVIATION, TRUE = 20.0, 1.0, 21.7
+MODE = """
+[tool]
+teeth = 2
+diameter = "12 mm"
+[[structure.mode]]
+frequency = "900 Hz"
+damping = 0.04
+mass = "1 kg"
+direction = [1, 0, 0]
+"""
+
+
+def test_a_fit_goes_on_where_several_steps_are_too_long():
+    """An arctangent flattens so that linear steps from 40 widths away end far beyond it."""
+    found = fit(
+        [Parameter("x", 2.0, 1.0, prior=False)],
+        lambda x: np.full(50, 20.0) * np.arctan(x[0] / 0.05),
+        np.array([2.0]),
+    )
+    assert found.values[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_value_known_by_a_factor_is_pulled_by_its_logarithm():
+    """One measurement of y = 3 x that is as certain as the declared x."""
+    one = KnownByFactor("x", 2.0, 0.4, 0.5, 8.0)
+    unit = math.log(1.2)
+    target = 2.0 * 1.2**2  # two factors up: known as well from both, it ends half way
+    found = fit([one], lambda x: np.log(x / target) / unit, np.array([2.0]))
+    assert found.values[0] == pytest.approx(2.0 * 1.2, rel=1e-4)
+    assert found.pulls["x"] == pytest.approx(1.0, rel=1e-3)
+    assert found.log_prior == pytest.approx(-0.5, rel=1e-3)
+    # two independent values of the logarithm: half the variance
+    assert math.sqrt(found.covariance[0, 0]) == pytest.approx(2.4 * unit / math.sqrt(2.0), rel=1e-3)
+
+
+def test_half_a_damping_is_as_far_as_twice_of_it(tmp_path):
+    case = loads(MODE, "case.toml")
+    measured = Measurement("frf", "taps", tmp_path, case, (), {})
+    paths = ["structure.mode[0].damping", "structure.mode[0].frequency"]
+    damping, frequency = with_priors(measured, paths)
+    assert damping.counted(0.02) == pytest.approx(-damping.counted(0.08))
+    assert damping.counted(0.048) == pytest.approx(1.0)
+    assert frequency.counted(882.0) == pytest.approx(-1.0)
+
+
+class Tone(Kind):
+    """Force that is a tone of the frequency that a case holds; noise of a hundredth."""
+
+    name = "axis"
+    columns = ()
+    estimates_noise = False
+
+    def channels(self, run):
+        return ("force",)
+
+    def known_noise(self, run):
+        return {"force": 0.01}
+
+    def nuisance_parameters(self, measurement):
+        return [Parameter("axis.offset", DECLARED, DEVIATION, 10.0, 30.0)]
+
+    def predict(self, case, run):
+        return {"force": np.sin(2.0 * math.pi * case.axis.offset * TIME)}
+
+
+def test_a_fit_beside_a_large_misfit_leaves_its_false_minimum(tmp_path):
+    """The sum of squares of two tones has a minimum every half hertz."""
+    case = loads('title = "tone"\n[axis]\nmoving_mass = "20 kg"')
+    random, runs = np.random.default_rng(3), []
+    for number in range(3):
+        force = np.sin(2.0 * math.pi * TRUE * TIME) + 0.01 * random.standard_normal(TIME.size)
+        runs.append(Run(f"{number}.csv", {}, {"time": TIME, "force": force}))
+    measured = Measurement("axis", "tones", tmp_path, case, tuple(runs))
+    kind = Tone()
+    noise = {run.name: kind.first_noise(run) for run in runs}
+    problem = Problem(measured, Predictions(kind), noise)
+    split = split_runs(measured)
+    near = problem.fit(split.fitted, {})
+    assert near.values[0] != pytest.approx(TRUE, abs=0.1)
+    found = fit_from_elsewhere(problem, near, split)
+    assert found.values[0] == pytest.approx(TRUE, abs=1e-3)
+    # what is at the noise is left as it is
+    assert fit_from_elsewhere(problem, found, split) is found
