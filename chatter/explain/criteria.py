@@ -89,5 +89,8 @@ DISCRIMINATES = 2.0
 #: lines of a periodogram over which its mean is the spectrum of a residual: few enough that what
 #: is left at one line does not hide what is lost beside it
 SMOOTHED_LINES = 5
+#: the same of harmonics of what repeats: those of two or three teeth, with runout between them, so
+#: that no single small one decides against much that is gained beside it
+SMOOTHED_HARMONICS = 7
 #: empirical terms that are learnt at the most, and candidates of each that are fitted in full
 MOST_TERMS, LEARNT_IN_FULL = 2, 2

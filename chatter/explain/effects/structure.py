@@ -34,12 +34,8 @@ def has_modes(measurement: Measurement) -> bool:
 
 def _speeds_apart(measurement: Measurement) -> int:
     """Number of spindle speeds of the runs that are speeds of their own."""
-    declared = measurement.case.cut
-    own = (run.overrides.get("cut.spindle_speed") for run in measurement.runs)
-    speeds = sorted(
-        float(declared.spindle_speed if speed is None and declared is not None else speed or 0.0)
-        for speed in own
-    )
+    cuts = (run.of(measurement.case).cut for run in measurement.runs)
+    speeds = sorted(cut.spindle_speed for cut in cuts if cut is not None)
     return 1 + sum(b - a > _APART * b for a, b in itertools.pairwise(speeds))
 
 

@@ -159,6 +159,10 @@ class Kind(ABC):
         """
         return measurement, []
 
+    def revolution(self, run: Run) -> float | None:
+        """Time after which a record repeats itself, s; None where it need not."""
+        return None
+
     def reported_channels(self, run: Run) -> tuple[str, ...]:
         """Channels whose errors are reported; all that are predicted by default."""
         return self.channels(run)

@@ -144,6 +144,11 @@ class Milling(Kind):
         """Return the measurement with the order of its anti-alias filter by a case."""
         return with_filter_by(measurement, case)
 
+    def revolution(self, run: Run) -> float | None:
+        """Time of a revolution where a record is settled, s."""
+        record = run.record
+        return 2.0 * math.pi / record.recorded.speed if isinstance(record, SteadyRecord) else None
+
     def predicted_as(self, run: Run) -> str:
         """Order of the filter of a settled record."""
         record = run.record

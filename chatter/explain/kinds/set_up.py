@@ -69,6 +69,10 @@ class SetUp(Kind):
         """Signals of a run that its kind predicts."""
         return self._of(run).channels(run)
 
+    def revolution(self, run: Run) -> float | None:
+        """Time after which a record of its kind repeats itself, s."""
+        return self._of(run).revolution(run)
+
     def reported_channels(self, run: Run) -> tuple[str, ...]:
         """Channels whose errors its kind reports."""
         return self._of(run).reported_channels(run)

@@ -3,6 +3,8 @@
 Neighbours in a residual of a model that lacks something are not independent: a count of samples
 would make every candidate certain. Whittle's (1953) likelihood takes the residual as noise of the
 spectrum that it has itself: what it loses at frequencies where much is left anyway counts little.
+What repeats with the revolution of a settled record is a line at each of its harmonics, however
+long the record is: each counts once, beside a spectrum that neighbouring harmonics share.
 """
 
 import math
@@ -11,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import SMOOTHED_LINES
+from chatter.explain.criteria import SMOOTHED_HARMONICS, SMOOTHED_LINES
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem
@@ -19,6 +21,8 @@ from chatter.explain.selection.split import Split
 
 #: power of a normalised residual below which a line is at its noise: less is chance, or numerics
 _LEAST_POWER = 1.0
+#: revolutions from which on lines between harmonics are there to tell what is noise
+_LEAST_TURNS = 4
 
 
 def log_evidence(problem: Problem, found: Fit, split: Split) -> float:
@@ -38,8 +42,13 @@ def log_likelihood(problem: Problem, residuals: NDArray[np.float64], runs: Seque
     """Logarithm of the likelihood of normalised residuals (n,) of runs, one after the other."""
     if not problem.kind.has_autocorrelation:
         return -0.5 * float(residuals @ residuals)
-    sizes = [run.signals[name].size for run in runs for name in problem.kind.channels(run)]
-    return sum(whittle(series) for series in np.split(residuals, np.cumsum(sizes)[:-1]))
+    series = [(run, name) for run in runs for name in problem.kind.channels(run)]
+    ends = np.cumsum([run.signals[name].size for run, name in series])
+    found = 0.0
+    for (run, _), own in zip(series, np.split(residuals, ends[:-1]), strict=True):
+        turn = problem.kind.revolution(run)
+        found += whittle(own) if turn is None else whittle_of_repeated(own, turn / run.step)
+    return found
 
 
 def whittle(residual: NDArray[np.float64]) -> float:
@@ -48,8 +57,35 @@ def whittle(residual: NDArray[np.float64]) -> float:
     The power of each line is the mean over its neighbours, and 1 at the least: of white noise of
     standard deviation one the result is about -n/2, as it would be without any autocorrelation.
     """
-    lines = np.abs(np.fft.rfft(residual)) ** 2 / max(residual.size, 1)
-    width = min(SMOOTHED_LINES, lines.size)
+    return _whittle(_powers(residual), SMOOTHED_LINES)
+
+
+def whittle_of_repeated(residual: NDArray[np.float64], turn: float) -> float:
+    """Whittle's likelihood of a normalised residual (n,) that may repeat itself.
+
+    The turn is counted in samples and need not be whole. As many turns as are whole are looked at:
+    harmonics are lines of their spectrum, and share their power with neighbouring harmonics; lines
+    between them share it with neighbouring lines. Of white noise the result is that of `whittle`.
+    """
+    turns = int(residual.size / turn)
+    if turns < _LEAST_TURNS:
+        return whittle(residual)
+    powers = _powers(residual[: round(turns * turn)])
+    harmonic = np.zeros(powers.size, dtype=np.bool_)
+    harmonic[turns::turns] = True
+    return _whittle(powers[harmonic], SMOOTHED_HARMONICS) + _whittle(
+        powers[~harmonic], SMOOTHED_LINES
+    )
+
+
+def _powers(residual: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Periodogram of a normalised residual (n,): 1 in the mean of white noise."""
+    return np.abs(np.fft.rfft(residual)) ** 2 / max(residual.size, 1)
+
+
+def _whittle(lines: NDArray[np.float64], smoothed: int) -> float:
+    """Logarithm of the likelihood of powers, beside their mean over so many neighbours."""
+    width = min(smoothed, lines.size)
     padded = np.pad(lines, (width // 2, width - 1 - width // 2), mode="reflect")
     power = np.lib.stride_tricks.sliding_window_view(padded, width).mean(axis=1)
     known = np.maximum(power, _LEAST_POWER)
