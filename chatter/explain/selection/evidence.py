@@ -9,6 +9,7 @@ long the record is: each counts once, beside a spectrum that neighbouring harmon
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ from chatter.explain.selection.split import Split
 _LEAST_POWER = 1.0
 #: revolutions from which on lines between harmonics are there to tell what is noise
 _LEAST_TURNS = 4
+#: lengths of records of which harmonics are kept, some megabytes each
+_SIZES_KEPT = 16
 
 
 def log_evidence(problem: Problem, found: Fit, split: Split) -> float:
@@ -63,19 +66,27 @@ def whittle(residual: NDArray[np.float64]) -> float:
 def whittle_of_repeated(residual: NDArray[np.float64], turn: float) -> float:
     """Whittle's likelihood of a normalised residual (n,) that may repeat itself.
 
-    The turn is counted in samples and need not be whole. As many turns as are whole are looked at:
-    harmonics are lines of their spectrum, and share their power with neighbouring harmonics; lines
-    between them share it with neighbouring lines. Of white noise the result is that of `whittle`.
+    The turn is counted in samples and need not be whole. Harmonics of it share their power with
+    neighbouring harmonics, what lies between them with neighbouring lines. Of white noise the
+    result is that of `whittle`.
     """
-    turns = int(residual.size / turn)
-    if turns < _LEAST_TURNS:
+    if residual.size < _LEAST_TURNS * turn:
         return whittle(residual)
-    powers = _powers(residual[: round(turns * turn)])
-    harmonic = np.zeros(powers.size, dtype=np.bool_)
-    harmonic[turns::turns] = True
-    return _whittle(powers[harmonic], SMOOTHED_HARMONICS) + _whittle(
-        powers[~harmonic], SMOOTHED_LINES
-    )
+    waves = _harmonics(residual.size, turn)
+    shares = waves.T @ residual
+    between = residual - waves @ shares
+    # the first is the mean; a cosine and a sine make one line
+    powers = 0.5 * np.sum(shares[1:].reshape(-1, 2) ** 2, axis=1)
+    return _whittle(powers, SMOOTHED_HARMONICS) + whittle(between)
+
+
+@lru_cache(maxsize=_SIZES_KEPT)
+def _harmonics(size: int, turn: float) -> NDArray[np.float64]:
+    """Orthonormal columns (n, 1 + 2 K): the mean, and cosines and sines of a turn in samples."""
+    orders = np.arange(1, math.ceil(0.5 * turn))
+    angle = 2.0 * math.pi / turn * np.outer(np.arange(size), orders)
+    pairs = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(size, -1)
+    return np.linalg.qr(np.column_stack([np.ones(size), pairs]))[0]
 
 
 def _powers(residual: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -25,7 +25,7 @@ from chatter.explain.effects.tool import (
 from chatter.explain.fitting import fit
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.reported_effects import parameters_of
-from chatter.explain.selection.evidence import probabilities, whittle
+from chatter.explain.selection.evidence import probabilities, whittle, whittle_of_repeated
 from chatter.explain.selection.problem import Problem
 
 CASE = loads("""
@@ -205,6 +205,39 @@ def test_evidence_of_what_a_spectrum_hides_is_small():
     # a change at the ripple's own frequency is not
     assert abs(whittle(noise + 1.01 * ripple) - alone) < 1.0
     assert probabilities([0.0, -np.log(3.0)]) == pytest.approx([0.75, 0.25])
+
+
+def test_what_repeats_counts_once_however_long_it_was_recorded():
+    """Harmonics of a revolution of 97.3 samples, halved: the gain is that of the harmonics."""
+    rng, turn, orders = np.random.default_rng(5), 97.3, np.arange(1, 41)
+    phases = rng.uniform(0.0, 2.0 * np.pi, orders.size)
+    gains = []
+    for size in (4000, 16000):
+        time, noise = np.arange(size), rng.standard_normal(size)
+        waves = np.cos(2.0 * np.pi * np.outer(time, orders) / turn + phases).sum(axis=1)
+        more, less = (whittle_of_repeated(noise + a * waves, turn) for a in (20.0, 10.0))
+        gains.append(less - more)
+    # half the amplitude of a harmonic: the logarithm of a quarter of its power
+    expected = orders.size * np.log(4.0)
+    assert gains == pytest.approx([expected, expected], rel=0.1)
+    # of noise alone it is no other than without a revolution
+    noise = rng.standard_normal(4000)
+    assert whittle_of_repeated(noise, turn) == pytest.approx(-2000.0, rel=0.1)
+
+
+def test_one_small_harmonic_does_not_outweigh_what_is_gained_beside_it():
+    time, turn = np.arange(8000), 100.0
+    noise = np.random.default_rng(6).standard_normal(time.size)
+
+    def residual(large, small):
+        tooth = np.cos(2.0 * np.pi * np.outer(time, np.arange(2, 40, 2)) / turn).sum(axis=1)
+        runout = np.cos(2.0 * np.pi * np.outer(time, np.arange(1, 40, 2)) / turn).sum(axis=1)
+        return noise + large * tooth + small * runout
+
+    # a third of the large ones gained, the small ones lost twofold
+    before, after = residual(30.0, 1.0), residual(20.0, 2.0)
+    assert whittle_of_repeated(after, turn) > whittle_of_repeated(before, turn) + 10.0
+    assert whittle(after) < whittle(before)
 
 
 def test_a_sensor_has_a_resonance_along_each_axis_that_is_measured():
