@@ -5,6 +5,7 @@ module          responsibility
 =============== ====================================================================
 kind            `Kind`: everything that is asked of a kind, with defaults
 milling         forces and displacements of cuts, by the time-domain engine
+axial_force     axial coefficients that a case leaves out
 axis            force of a feed axis along its measured motion
 axis_record     smoothed motion, weights and noise of the record of a move
 drive           torque and position of an axis of a machine, by the machine in time

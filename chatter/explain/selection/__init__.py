@@ -10,6 +10,7 @@ significance        whether a candidate gains more than chance gives
 candidates          effects tried on top of others
 cheaper_runs        candidates screened by the runs that cost little to predict
 joint_steps         pairs that may pay together though neither does alone
+other_starts        fits that begin elsewhere, where much is left
 path                effects added one by one or in pairs, and tried again
 established         which effects are certain though something is left, and which are none
 search              which effects are added
