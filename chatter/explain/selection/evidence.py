@@ -49,8 +49,10 @@ def log_likelihood(problem: Problem, residuals: NDArray[np.float64], runs: Seque
     ends = np.cumsum([run.signals[name].size for run, name in series])
     found = 0.0
     for (run, _), own in zip(series, np.split(residuals, ends[:-1]), strict=True):
-        turn = problem.kind.revolution(run)
-        found += whittle(own) if turn is None else whittle_of_repeated(own, turn / run.step)
+        revolution = problem.kind.revolution(run)
+        found += (
+            whittle(own) if revolution is None else whittle_of_repeated(own, revolution / run.step)
+        )
     return found
 
 
@@ -63,16 +65,16 @@ def whittle(residual: NDArray[np.float64]) -> float:
     return _whittle(_powers(residual), SMOOTHED_LINES)
 
 
-def whittle_of_repeated(residual: NDArray[np.float64], turn: float) -> float:
+def whittle_of_repeated(residual: NDArray[np.float64], revolution: float) -> float:
     """Whittle's likelihood of a normalised residual (n,) that may repeat itself.
 
-    The turn is counted in samples and need not be whole. Harmonics of it share their power with
+    The revolution is counted in samples and need not be whole. Harmonics of it share their power with
     neighbouring harmonics, what lies between them with neighbouring lines. Of white noise the
     result is that of `whittle`.
     """
-    if residual.size < _LEAST_TURNS * turn:
+    if residual.size < _LEAST_TURNS * revolution:
         return whittle(residual)
-    waves = _harmonics(residual.size, turn)
+    waves = _harmonics(residual.size, revolution)
     shares = waves.T @ residual
     between = residual - waves @ shares
     # the first is the mean; a cosine and a sine make one line
@@ -81,10 +83,10 @@ def whittle_of_repeated(residual: NDArray[np.float64], turn: float) -> float:
 
 
 @lru_cache(maxsize=_SIZES_KEPT)
-def _harmonics(size: int, turn: float) -> NDArray[np.float64]:
-    """Orthonormal columns (n, 1 + 2 K): the mean, and cosines and sines of a turn in samples."""
-    orders = np.arange(1, math.ceil(0.5 * turn))
-    angle = 2.0 * math.pi / turn * np.outer(np.arange(size), orders)
+def _harmonics(size: int, revolution: float) -> NDArray[np.float64]:
+    """Orthonormal columns (n, 1 + 2 K): the mean, and cosines and sines of a revolution in samples."""
+    orders = np.arange(1, math.ceil(0.5 * revolution))
+    angle = 2.0 * math.pi / revolution * np.outer(np.arange(size), orders)
     pairs = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(size, -1)
     return np.linalg.qr(np.column_stack([np.ones(size), pairs]))[0]
 
