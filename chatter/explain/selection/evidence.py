@@ -23,7 +23,7 @@ from chatter.explain.selection.split import Split
 #: power of a normalised residual below which a line is at its noise: less is chance, or numerics
 _LEAST_POWER = 1.0
 #: revolutions from which on lines between harmonics are there to tell what is noise
-_LEAST_TURNS = 4
+_LEAST_REVOLUTIONS = 4
 #: lengths of records of which harmonics are kept, some megabytes each
 _SIZES_KEPT = 16
 
@@ -68,11 +68,11 @@ def whittle(residual: NDArray[np.float64]) -> float:
 def whittle_of_repeated(residual: NDArray[np.float64], revolution: float) -> float:
     """Whittle's likelihood of a normalised residual (n,) that may repeat itself.
 
-    The revolution is counted in samples and need not be whole. Harmonics of it share their power with
-    neighbouring harmonics, what lies between them with neighbouring lines. Of white noise the
+    The revolution is counted in samples and need not be whole. Harmonics of it share their power
+    with neighbouring harmonics, what lies between them with neighbouring lines. Of white noise the
     result is that of `whittle`.
     """
-    if residual.size < _LEAST_TURNS * revolution:
+    if residual.size < _LEAST_REVOLUTIONS * revolution:
         return whittle(residual)
     waves = _harmonics(residual.size, revolution)
     shares = waves.T @ residual
@@ -84,7 +84,7 @@ def whittle_of_repeated(residual: NDArray[np.float64], revolution: float) -> flo
 
 @lru_cache(maxsize=_SIZES_KEPT)
 def _harmonics(size: int, revolution: float) -> NDArray[np.float64]:
-    """Orthonormal columns (n, 1 + 2 K): the mean, and cosines and sines of a revolution in samples."""
+    """Orthonormal columns (n, 1 + 2 K): the mean, cosines and sines of a revolution in samples."""
     orders = np.arange(1, math.ceil(0.5 * revolution))
     angle = 2.0 * math.pi / revolution * np.outer(np.arange(size), orders)
     pairs = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(size, -1)
