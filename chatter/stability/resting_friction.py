@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from chatter.description.arrays import Array
-from chatter.description.machine.references import is_straight
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
@@ -117,6 +116,9 @@ def _shown(depth: float) -> str:
 
 def _sliding_from(structure: LinearisedMachine, names: Sequence[str]) -> Iterator[str]:
     """Motion of each friction, along or about its axis, beyond which it slides, in words."""
+    # the tables of machine files are needed here alone
+    from chatter.description.machine.references import is_straight
+
     laws = {one.name: one.law for one in structure.cut.machine.frictions}
     file = structure.cut.file
     for name in names:
