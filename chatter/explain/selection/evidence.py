@@ -9,9 +9,9 @@ long the record is: each counts once, beside a spectrum that neighbouring harmon
 
 import math
 from collections.abc import Sequence
-from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from chatter.explain.criteria import SMOOTHED_HARMONICS, SMOOTHED_LINES
@@ -24,8 +24,9 @@ from chatter.explain.selection.split import Split
 _LEAST_POWER = 1.0
 #: revolutions from which on lines between harmonics are there to tell what is noise
 _LEAST_REVOLUTIONS = 4
-#: lengths of records of which harmonics are kept, some megabytes each
-_SIZES_KEPT = 16
+#: times that harmonics are taken off: over revolutions of a part of a sample they are orthogonal to
+#: each other but for a share of about one over the samples
+_PROJECTIONS = 2
 
 
 def log_evidence(problem: Problem, found: Fit, split: Split) -> float:
@@ -68,27 +69,24 @@ def whittle(residual: NDArray[np.float64]) -> float:
 def whittle_of_repeated(residual: NDArray[np.float64], revolution: float) -> float:
     """Whittle's likelihood of a normalised residual (n,) that may repeat itself.
 
-    The revolution is counted in samples and need not be whole. Harmonics of it share their power
-    with neighbouring harmonics, what lies between them with neighbouring lines. Of white noise the
-    result is that of `whittle`.
+    The revolution is counted in samples and need not be whole: its harmonics are found by chirp z
+    transforms (Rabiner, Schafer and Rader 1969). They share their power with neighbouring ones,
+    what lies between them with neighbouring lines. Of white noise the result is that of `whittle`.
     """
-    if residual.size < _LEAST_REVOLUTIONS * revolution:
+    revolutions = int(residual.size / revolution)
+    if revolutions < _LEAST_REVOLUTIONS:
         return whittle(residual)
-    waves = _harmonics(residual.size, revolution)
-    shares = waves.T @ residual
-    between = residual - waves @ shares
-    # the first is the mean; a cosine and a sine make one line
-    powers = 0.5 * np.sum(shares[1:].reshape(-1, 2) ** 2, axis=1)
+    between = residual[: round(revolutions * revolution)]
+    between = between - between.mean()
+    step, count = 2j * math.pi / revolution, math.ceil(0.5 * revolution)
+    harmonics = np.zeros(count, dtype=np.complex128)
+    for _ in range(_PROJECTIONS):
+        found = scipy.signal.czt(between, count, np.exp(-step)) / between.size
+        found[0] = 0.0
+        between = between - 2.0 * scipy.signal.czt(found, between.size, np.exp(step)).real
+        harmonics += found
+    powers = np.abs(harmonics[1:]) ** 2 * between.size
     return _whittle(powers, SMOOTHED_HARMONICS) + whittle(between)
-
-
-@lru_cache(maxsize=_SIZES_KEPT)
-def _harmonics(size: int, revolution: float) -> NDArray[np.float64]:
-    """Orthonormal columns (n, 1 + 2 K): the mean, cosines and sines of a revolution in samples."""
-    orders = np.arange(1, math.ceil(0.5 * revolution))
-    angle = 2.0 * math.pi / revolution * np.outer(np.arange(size), orders)
-    pairs = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(size, -1)
-    return np.linalg.qr(np.column_stack([np.ones(size), pairs]))[0]
 
 
 def _powers(residual: NDArray[np.float64]) -> NDArray[np.float64]:
