@@ -80,6 +80,9 @@ NUMERICS = 0.004
 #: the same of an acceleration, of which the top of the band is most: filter and numerics differ
 #: there most
 NUMERICS_OF_ACCELERATION = 0.008
+#: the same of a settled record on top of that of any signal: speed, start angle and the edge of the
+#: filter are estimated too, which left half a percent in two sets that were explained otherwise
+NUMERICS_OF_SETTLED = 0.005
 #: normalised residual of a run that a trial case cannot predict: worse than any that it can
 IMPOSSIBLE = 1e3
 #: noise that is assumed before the first fit, as a share of the signal

@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.explain.criteria import NUMERICS_OF_ACCELERATION
+from chatter.explain.criteria import NUMERICS_OF_ACCELERATION, NUMERICS_OF_SETTLED
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
@@ -164,9 +164,11 @@ class Milling(Kind):
         """Standard deviation of every channel from the residual, where records do not tell it."""
         found = dict(super().noise_beside(run, predicted, noise))
         for name, one in run.components.items():
+            further = NUMERICS_OF_SETTLED if isinstance(run.record, SteadyRecord) else 0.0
             if one.quantity == ACCELERATION:
-                level = float(np.sqrt(np.mean(run.signals[name] ** 2)))
-                found[name] = math.hypot(found[name], NUMERICS_OF_ACCELERATION * level)
+                further = NUMERICS_OF_ACCELERATION
+            level = float(np.sqrt(np.mean(run.signals[name] ** 2)))
+            found[name] = math.hypot(found[name], further * level)
         return {**found, **self.known_noise(run)}
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:

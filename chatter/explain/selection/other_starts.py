@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from chatter.explain.criteria import OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.priors import FREEDOM
 from chatter.explain.fitting import WORKERS, Fit
 from chatter.explain.selection.problem import Problem
@@ -31,12 +32,15 @@ _BETTER = 0.98
 def fit_from_elsewhere(problem: Problem, now: Fit, split: Split) -> Fit:
     """Fit to the runs for fitting that is the best from several starts, where much is left.
 
-    The residual is taken for noise, so that tolerances hold against it. The fit itself where
-    little is left, or where no other is clearly better.
+    The residual is taken for noise, so that tolerances hold against it. Where little is left but
+    declared values are out of their tolerances, the one other start is the declared values. The fit
+    itself where no other is clearly better.
     """
-    level = now.cost / max(now.residuals.size, 1)
-    if level < _LARGE or not now.parameters:
+    if not now.parameters:
         return now
+    level = now.cost / max(now.residuals.size, 1)
+    if level < _LARGE:
+        return _from_declared(problem, now, split)
     held = _with_noise(problem, np.sqrt(level))
     own = held.fit(split.fitted, now.by_name)
     best = min((*_followed(held, own, split), own), key=_objective)
@@ -45,6 +49,19 @@ def fit_from_elsewhere(problem: Problem, now: Fit, split: Split) -> Fit:
     if _objective(best) > _BETTER * (now.cost / level - 2.0 * now.log_prior):
         return now
     return problem.fit(split.fitted, best.by_name)
+
+
+def _from_declared(problem: Problem, now: Fit, split: Split) -> Fit:
+    """Fit with declared values put back that are out of tolerance, where that is better.
+
+    They were drawn there when the effects were not in the case.
+    """
+    pulls = problem.declared_pulls(now)
+    if all(abs(pull) <= OUT_OF_TOLERANCE for pull in pulls.values()):
+        return now
+    begin = {name: value for name, value in now.by_name.items() if name not in pulls}
+    back = problem.fit(split.fitted, begin)
+    return back if _objective(back) < _objective(now) else now
 
 
 def _objective(found: Fit) -> float:
