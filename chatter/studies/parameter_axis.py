@@ -1,6 +1,7 @@
 """Axis of a diagram over any path of a case: `PATH=FROM..TO[:COUNT]`, or values of Python."""
 
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -42,7 +43,8 @@ def axis_of(
     try:
         found = _read(given, case, option, count, most)
     except InputError as error:
-        messages = [text.replace("--vary", option) for text in error.messages]
+        # what it says of `whatif` stands
+        messages = [re.sub(r"(?<!whatif )--vary", option, text) for text in error.messages]
         raise InputError(messages) from None
     numbers = found.numbers
     if numbers is None or len(set(numbers)) < 2:
