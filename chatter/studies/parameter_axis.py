@@ -1,7 +1,6 @@
 """Axis of a diagram over any path of a case: `PATH=FROM..TO[:COUNT]`, or values of Python."""
 
 import math
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -43,8 +42,7 @@ def axis_of(
     try:
         found = _read(given, case, option, count, most)
     except InputError as error:
-        # what it says of `whatif` stands
-        messages = [re.sub(r"(?<!whatif )--vary", option, text) for text in error.messages]
+        messages = [text.replace("--vary", option) for text in error.messages]
         raise InputError(messages) from None
     numbers = found.numbers
     if numbers is None or len(set(numbers)) < 2:
@@ -78,7 +76,7 @@ def _require_quantity(case: Case, path: str, option: str) -> None:
         else:
             why = (
                 f"is no quantity that varies smoothly, as an axis does ({_EXAMPLE}); "
-                f"`chatter whatif --vary {path}=...` compares its values"
+                f"`chatter whatif` compares its values"
             )
         raise InputError(f"{option} {formatted(path)}: {why}")
 

@@ -36,7 +36,7 @@ def test_a_wrong_count_is_said_at_the_range(command, option, path, span, told, t
     [
         ("cut.axial_depht=1 mm..2 mm:5", 'did you mean "axial_depth"?'),
         ("cut.mode=up..down:3", "is no quantity that varies smoothly, as an axis does"),
-        ("tool.teeth=2..6", "`chatter whatif --vary tool.teeth=...` compares its values"),
+        ("tool.teeth=2..6", "`chatter whatif` compares its values"),
         # three cuts alike, and a warning of the library that draws
         ("cut.axial_depth=1 mm..1 mm:3", "the range is empty; two different ends are required"),
         ("cut.axial_depth=1 mm, 2 mm", "FROM..TO"),

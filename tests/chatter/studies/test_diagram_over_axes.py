@@ -222,7 +222,7 @@ def test_files_of_the_command(tmp_path):
     [
         (["--x", "cut.nothing=1 mm..2 mm"], "no such quantity"),
         (["--x", "title=1..2"], "no quantity that varies smoothly"),
-        (["--x", "cut.mode=up..down"], "whatif --vary cut.mode="),
+        (["--x", "cut.mode=up..down"], "no quantity that varies smoothly"),
         (["--x", "cut.radial_depth=1 mm..1 mm"], "range is empty"),
         (["--x", "cut.radial_depth=1 mm..2 mm:1"], "count of 1"),
         (["--x", "cut.radial_depth=1 mm..2 mm:1e9"], "--x cut.radial_depth"),
