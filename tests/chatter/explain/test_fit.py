@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import loads
-from chatter.explain.fitting import KnownByFactor, Parameter, fit, with_priors
+from chatter.explain.fitting import KnownByFactor, Parameter, fit, with_priors, within_reach
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -56,7 +56,7 @@ def test_half_a_damping_is_as_far_as_twice_of_it(tmp_path):
     case = loads(MODE, "case.toml")
     measured = Measurement("frf", "taps", tmp_path, case, (), {})
     paths = ["structure.mode[0].damping", "structure.mode[0].frequency"]
-    damping, frequency = with_priors(measured, paths)
+    damping, frequency = within_reach(with_priors(measured, paths))
     assert damping.counted(0.02) == pytest.approx(-damping.counted(0.08))
     assert damping.counted(0.048) == pytest.approx(1.0)
     assert frequency.counted(882.0) == pytest.approx(-1.0)
@@ -100,3 +100,30 @@ def test_a_fit_beside_a_large_misfit_leaves_its_false_minimum(tmp_path):
     assert found.values[0] == pytest.approx(TRUE, abs=1e-3)
     # what is at the noise is left as it is
     assert fit_from_elsewhere(problem, found, split) is found
+
+
+class Twofold(Tone):
+    """Force that is the same for a value a below a middle and one as far above it."""
+
+    middle = 17.0
+
+    def predict(self, case, run):
+        return {"force": (case.axis.offset - self.middle) ** 2 * np.sin(TIME)}
+
+
+@pytest.mark.parametrize("true", [20.0, 20.4])
+def test_declared_values_out_of_tolerance_are_put_back_where_that_fits_as_well(tmp_path, true):
+    """Both roots are at the noise; one is six tolerances away from what is declared."""
+    case = loads('title = "twofold"\n[axis]\nmoving_mass = "20 kg"')
+    random, kind, runs = np.random.default_rng(4), Twofold(), []
+    for number in range(3):
+        force = (true - kind.middle) ** 2 * np.sin(TIME) + 0.01 * random.standard_normal(TIME.size)
+        runs.append(Run(f"{number}.csv", {}, {"time": TIME, "force": force}))
+    measured = Measurement("axis", "twofold", tmp_path, case, tuple(runs))
+    noise = {run.name: kind.first_noise(run) for run in runs}
+    problem, split = Problem(measured, Predictions(kind), noise), split_runs(measured)
+    mirrored = problem.fit(split.fitted, {"axis.offset": 2.0 * kind.middle - true})
+    assert mirrored.values[0] == pytest.approx(2.0 * kind.middle - true, abs=1e-2)
+    assert abs(mirrored.pulls["axis.offset"]) > 3.0
+    found = fit_from_elsewhere(problem, mirrored, split)
+    assert found.values[0] == pytest.approx(true, abs=1e-2)
