@@ -205,8 +205,6 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
                     past[k, 2] = p.runout_offset * (mine - other)
             width = (high - low) / POINTS_ON_EDGE
             entering = front > -p.radius
-            if not entering:
-                engaged += (high - low) / c.depth
             for i in range(POINTS_ON_EDGE):
                 phi = tip - p.lag * (low + (i + 0.5) * width)
                 sine, cosine = np.sin(phi), np.cos(phi)
@@ -215,12 +213,10 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
                     h = min(h, past[k, 0] * sine + past[k, 1] * cosine + past[k, 2])
                 if entering:
                     # the block is no thicker along the radius than as far as its front edge
-                    behind_front = p.radius - front / max(sine, 1e-9)
-                    if behind_front > 0.0:
-                        engaged += width / c.depth
-                    h = min(h, behind_front)
+                    h = min(h, p.radius - front / max(sine, 1e-9))
                 if h <= 0.0:
                     continue
+                engaged += width / c.depth
                 law = h if p.exponent == 1.0 else p.h0 * (h / p.h0) ** p.exponent
                 rub = ploughing / (c.speed * p.radius) * (vel[0] * sine + vel[1] * cosine)
                 ft = ktc * law + kte * p.edge_share[j] + p.ploughing_friction * rub

@@ -76,7 +76,10 @@ def _print_explanation(result: Explanation) -> None:
             )
         for name, test in effect["discriminating_test"].items():
             print_line(f"  {in_words(name, test)}")
-    helping = [one["name"] for one in summary.get("partial", ())]
+    helping = [
+        f"{one['name']} (probability {one['probability']:.2g})"
+        for one in summary.get("partial", ())
+    ]
     if helping:
         print_line(f"may explain a part, not added: {', '.join(helping)}")
     for term in summary.get("empirical", ()):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.checking import Checked, checked
-from chatter.explain.criteria import OUT_OF_TOLERANCE
+from chatter.explain.criteria import MOST_PROBABLE, MOST_PROBABLE_BESIDE_UNKNOWN, OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
 from chatter.explain.cutting_tests.search_of_tests import search_of_tests
 from chatter.explain.data_checks.finding import SignalFinding
@@ -120,10 +120,10 @@ class Explanation:
         return {
             "verdict": self.verdict,
             "checks": [one.as_dict() for one in self.checks],
-            "effects": self._effects(self.found.accepted) if self.adds_effects else [],
+            "effects": self._effects(self._added, MOST_PROBABLE),
             **self._learnt(),
             # what helps, but is not beyond doubt
-            "partial": self._effects(self.helping),
+            "partial": self._effects(self.helping, MOST_PROBABLE_BESIDE_UNKNOWN),
             "out_of_tolerance": self._out_of_tolerance(),
             **self._errors(),
             "candidates": self._candidates(),
@@ -244,7 +244,12 @@ class Explanation:
             self.found.helping if self.adds_effects else (*self.found.accepted, *self.found.helping)
         )
 
-    def _effects(self, stages: tuple[Stage, ...]) -> list[dict[str, Any]]:
+    @property
+    def _added(self) -> tuple[Stage, ...]:
+        """Effects that are added to the case."""
+        return self.found.accepted if self.adds_effects else ()
+
+    def _effects(self, stages: tuple[Stage, ...], most_probable: float) -> list[dict[str, Any]]:
         added = set(self.found.effect_names)
         return [
             {
@@ -253,7 +258,7 @@ class Explanation:
                     self.found.final if stage.best.effect.name in added else stage.best.fit,
                     stage.best.effect,
                 ),
-                "probability": round(probability(stage), 4),
+                "probability": round(probability(stage, most_probable), 4),
                 "confounded_with": [one.effect.name for one in confounded(stage)],
                 "discriminating_test": self._discriminating_tests(stage),
                 "description": stage.best.effect.help,

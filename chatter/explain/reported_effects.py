@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import CONFOUNDED, MOST_PROBABLE, NUMERICS, UNDETERMINED
+from chatter.explain.criteria import CONFOUNDED, NUMERICS, UNDETERMINED
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import FREE_SIZES, Fit, Parameter
 from chatter.explain.selection.candidates import Candidate, Stage
@@ -23,12 +23,15 @@ _POINTS = 41
 _PART = 0.1
 
 
-def probability(stage: Stage) -> float:
-    """Probability of the best candidate among those tried and none, by their evidence."""
+def probability(stage: Stage, most: float) -> float:
+    """Probability of the best candidate among those tried and none, by their evidence.
+
+    It is at most `most`, as the model that is right may not be among them.
+    """
     shares = probabilities([stage.evidence, *(one.evidence for one in stage.tried)])
     names = ["", *(one.effect.name for one in stage.tried)]
     own = sum(p for p, name in zip(shares, names, strict=True) if name == stage.best.effect.name)
-    return min(own, MOST_PROBABLE)
+    return min(own, most)
 
 
 def confounded(stage: Stage) -> list[Candidate]:

@@ -31,12 +31,16 @@ def penalised_cost(problem: Problem, fit: Fit) -> float:
     Likelihood, priors, and for each number without a prior the logarithm of the number of tests
     (Schwarz 1978, Ann. Stat. 6:461).
     """
-    names = {one.name for one in declared(problem)}
     tests = sum(
         run.signals["stable"].size for run in problem.measurement.runs if run.record == "stable"
     )
-    added = sum(1 for one in fit.parameters if one.name not in names and not one.prior)
-    return fit.cost + prior_cost(problem, fit) + added * math.log(tests)
+    return fit.cost + prior_cost(problem, fit) + charged_numbers(problem) * math.log(tests)
+
+
+def charged_numbers(problem: Problem) -> int:
+    """How many numbers effects add that no prior holds."""
+    names = {one.name for one in declared(problem)}
+    return sum(1 for one in problem.parameters() if one.name not in names and not one.prior)
 
 
 def cost_of_scatter(problem: Problem) -> float:

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from chatter.explain.cutting_tests.evidence import cost_of_scatter, penalised_cost, with_scatter
-from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_widely
-from chatter.explain.cutting_tests.mode_of_tests import MissingModeOfTests
-from chatter.explain.cutting_tests.priors import prior_cost
-from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
-from chatter.explain.cutting_tests.reliability import (
-    MOST_LOST_BY_SCATTER,
-    Reliability,
-    lost_by_scatter,
-    reliability_of,
+from chatter.explain.cutting_tests.evidence import (
+    charged_numbers,
+    cost_of_scatter,
+    penalised_cost,
+    with_scatter,
 )
+from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_widely
+from chatter.explain.cutting_tests.misfit import Misfit, misfit_of
+from chatter.explain.cutting_tests.mode_of_tests import MissingModeOfTests
+from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
+from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
 from chatter.explain.cutting_tests.starts import (
     ANNEALED,
     share_of_work,
@@ -32,7 +31,6 @@ from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates
 from chatter.explain.fitting import Fit
 from chatter.explain.kinds.kind import Noise
-from chatter.explain.kinds.stability import likely_stable
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.candidates import Candidate, Progress, Stage, linearised
@@ -102,6 +100,11 @@ class _Found(NamedTuple):
         """Penalised cost."""
         return penalised_cost(self.problem, self.fit)
 
+    @property
+    def misfit(self) -> Misfit:
+        """What is lost above scatter."""
+        return misfit_of(self.problem, self.fit)
+
     def beside(self, other: Problem) -> float:
         """Penalised cost with the scatter of another problem, so that models compare."""
         return self._cost_with(other.noise)
@@ -140,13 +143,13 @@ def search_of_tests(
     problem = Problem(measurement, predictions, {run.name: kind.first_noise(run) for run in runs})
     progress("refitting the declared values", 0.0)
     bases = [_refitted(problem, [{}])]
-    if not _misfit_of(bases[0]).is_scatter:
+    if not bases[0].misfit.is_scatter:
         # an effect must not gain by a minimum that the declared values alone can leave
         bases.append(_refitted_from_others(problem, progress))
         bases.sort(key=lambda one: one.with_its_scatter(problem))
     path = _path_from(bases[0], progress)
     # limits that scatter widely excuse a misfit
-    if not _misfit_of(path.found).is_scatter or cost_of_scatter(path.found.problem) > 0.0:
+    if not path.found.misfit.is_scatter or cost_of_scatter(path.found.problem) > 0.0:
         other_base = bases[1] if len(bases) > 1 else _refitted_from_others(problem, progress)
         other = _path_from(other_base, progress)
         beside = path.found.problem
@@ -207,47 +210,9 @@ def _fitted_from(problem: Problem, start: Mapping[str, float]) -> _Found:
     return _Found(problem, fit_tests(problem, runs, first.by_name))
 
 
-class _Misfit(NamedTuple):
-    """Twice the lost logarithm of likelihood and prior above that of scatter."""
-
-    excess: float
-    deviation: float  # standard deviation of it, where nothing is missing
-    verdicts: int
-
-    @property
-    def is_scatter(self) -> bool:
-        """Whether no more is lost than scatter loses."""
-        return self.excess < MOST_LOST_BY_SCATTER * self.deviation
-
-    @property
-    def leaves_nothing(self) -> bool:
-        """Whether no effect can gain enough: it has a number, which the evidence charges for."""
-        return self.excess < _LEAST_GAIN + math.log(max(self.verdicts, 2))
-
-
-def _misfit_of(found: _Found) -> _Misfit:
-    problem, fit = found
-    case = problem.case(fit.by_name)
-    expected, variance, count = 0.0, 0.0, 0
-    for run in problem.measurement.runs:
-        predicted = problem.predictions.of(case, run)
-        if run.record != "stable":
-            readings = predicted[str(run.record)].size
-            expected, variance = expected + readings, variance + 2.0 * readings
-            continue
-        likely = likely_stable(predicted["margin"], problem.noise[run.name]["stable"])
-        own = lost_by_scatter(likely)
-        expected, variance = expected + own.mean, variance + own.variance
-        count += likely.size
-    excess = fit.cost - expected + prior_cost(problem, fit)
-    return _Misfit(excess, math.sqrt(variance), count)
-
-
 def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Found | None]:
     """Try every effect beside those found; the best where the tests ask for it."""
     problem, runs = found.problem, found.problem.measurement.runs
-    if _misfit_of(found).leaves_nothing:
-        return Stage(found.fit, found.fit.cost, -0.5 * found.cost, ()), None
     tried = []
     for effect, start in _most_promising(found, progress, number):
         progress(f"fitting {effect.name}", 0.25 + 0.35 * number)
@@ -274,8 +239,10 @@ def _most_promising(
     # those of effects stay; the declared values may have been led astray by what is missing
     declared_values = {key: value for key, value in now.items() if key.partition(".")[0] in named}
     ranked: list[tuple[float, Effect, Mapping[str, float]]] = []
+    misfit, charged = found.misfit, charged_numbers(problem)
     for effect in _candidates(problem, found.fit):
-        if effect.name in named:
+        numbers = charged_numbers(problem.with_effect(effect)) - charged
+        if effect.name in named or not misfit.may_fall_by(_LEAST_GAIN, numbers):
             continue
         progress(f"looking at {effect.name}", 0.1 + 0.35 * number)
         if effect.name == "wear" and _powers(problem):
