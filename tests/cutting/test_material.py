@@ -1,5 +1,6 @@
 """The table of materials: numbers as printed in their sources, the law that they are of, search."""
 
+import functools
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from chatter.description.case import loads
 from cutting.force.exponential import ExponentialLaw
+from cutting.material import row as row_module
 from cutting.material.families import family_of
 from cutting.material.grades import EQUIVALENT_GRADES, bare
 from cutting.material.specific_cutting_force import RADIAL_RATIO
@@ -147,7 +149,10 @@ def test_what_is_no_designation_has_no_family(grade):
     assert family_of(grade) is None
 
 
-def test_every_line_of_grades_leads_to_rows_and_no_designation_is_in_two():
+def test_every_line_of_grades_leads_to_rows_and_no_designation_is_in_two(monkeypatch):
+    # every row asks anew for the names of the same grade, by all lines of the table
+    for name in ("designations", "bare"):
+        monkeypatch.setattr(row_module, name, functools.cache(getattr(row_module, name)))
     seen = [name for line in EQUIVALENT_GRADES for name in set(map(bare, line))]
     assert len(seen) == len(set(seen))
     for line in EQUIVALENT_GRADES:

@@ -167,7 +167,14 @@ def test_the_first_limit_is_found_however_deep_the_cut_is(depth):
     assert chatter.check(case).critical_depth == pytest.approx(2.10469e-3, rel=1e-5)
 
 
-@pytest.mark.parametrize("speed", ["1200 rpm", pytest.param("300 rpm", marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(
+    "speed",
+    [
+        "2400 rpm",
+        pytest.param("1200 rpm", marks=pytest.mark.nightly),
+        pytest.param("300 rpm", marks=pytest.mark.nightly),
+    ],
+)
 def test_methods_agree_on_the_chatter_frequency_at_low_speed(speed):
     """Many folds of the period: the root's dip is narrower than that at a natural frequency."""
     two = {"damping": 0.03, "stiffness": "12 N/um"}

@@ -66,7 +66,7 @@ def parts_before_the_time_domain(records):
     )
 
 
-@pytest.mark.parametrize("command", ["optimum", "pitch"])
+@pytest.mark.parametrize("command", [pytest.param("optimum", marks=pytest.mark.nightly), "pitch"])
 def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
     path, out, whole = tmp_path / "case.toml", tmp_path / "out", tmp_path / "whole"
     case = end_mill(CASES[command])

@@ -149,6 +149,7 @@ def test_nothing_feasible_is_said_with_its_reason(tmp_path):
     assert not (tmp_path / "out" / "case-optimum.toml").exists()
 
 
+@pytest.mark.nightly
 def test_uncertain_values_take_depth_away(tmp_path):
     changes = {"material.Ktc": "800 +- 60 MPa", "structure.mode[1].frequency": "1010 +- 15 Hz"}
     speeds = {"from": "7200 rpm", "to": "8000 rpm"}
