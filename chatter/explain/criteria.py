@@ -77,7 +77,7 @@ CONFOUNDED = 0.03
 MOST_PROBABLE = 0.999
 #: the same of an effect that helps beside something unexplained and is not established: what is
 #: unknown does all that it does. Of 13 such in a survey none was in the data, which is (0 + 1) of
-#: (13 + 2) by the rule of succession (Laplace 1774); in the next survey none of 27 was
+#: (13 + 2) by the rule of succession (Laplace 1774); in the next two surveys none of 40 was
 MOST_PROBABLE_BESIDE_UNKNOWN = 0.07
 #: part of a signal's rms by which predictions of other numerics may differ
 NUMERICS = 0.004

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -88,3 +90,12 @@ def test_a_survey_goes_on_where_it_stopped(tmp_path, monkeypatch):
     assert len(read_answers(tmp_path / "answers.jsonl")) == 4
     draw(summary_of(ANSWERS), tmp_path / "reliability.png")
     assert (tmp_path / "reliability.png").stat().st_size > 5000
+
+
+def test_the_survey_that_is_kept_states_what_comes_true():
+    kept = read_answers(Path(answers_of_survey.__file__).parent / "survey" / "answers.jsonl")
+    found = summary_of(kept)
+    assert found.sets >= 300
+    assert found.error < 0.05
+    assert found.wrong < 0.02 * found.named
+    assert found.nothing[0] == found.nothing[1] > 40
