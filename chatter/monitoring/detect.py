@@ -11,7 +11,8 @@ from chatter.description.errors import InputError
 from chatter.description.units import QuantityError, parse
 from chatter.detection.spectral.frame_evidence import evidence_of
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.segments import CHATTER, Segment, segments_of
+from chatter.detection.spectral.segments import CHATTER, Segment
+from chatter.detection.spectral.two_speeds import judged
 from chatter.monitoring.advice import is_stable, mode_of, proposed_by_frequency, stable_speeds
 from chatter.monitoring.recording_file import read_recording
 from chatter.monitoring.result import Advice, DetectedChatter
@@ -73,7 +74,7 @@ def detect(
         rate = sampling_frequency(sampling_rate)
         recording = read_recording(recording, channels, rate, columns)
     evidence = evidence_of(recording, given, teeth)
-    segments = tuple(segments_of(evidence))
+    segments = tuple(judged(evidence))
     return DetectedChatter(
         recording, evidence, segments, given, case, _advice(segments, evidence.teeth, case)
     )

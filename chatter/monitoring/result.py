@@ -10,6 +10,7 @@ from chatter.description.case import Case
 from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
+from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
@@ -90,7 +91,7 @@ class DetectedChatter:
 
     def summary(self) -> dict[str, Any]:
         """Content of detection.json."""
-        revolution = self.evidence.revolution
+        revolution, other = self.evidence.revolution, self._refuting
         return {
             "recording": self.recording.name,
             "channels": list(self.recording.channels),
@@ -99,6 +100,7 @@ class DetectedChatter:
             "chatter_frequency_Hz": self.chatter_frequency,
             "spindle_speed_rpm": None if revolution is None else 60.0 * revolution.mean,
             "spindle_speed_source": None if revolution is None else revolution.source,
+            "spindle_speed_of_lines_rpm": None if other is None else 60.0 * other.frequency,
             "teeth": self.evidence.teeth,
             "segments": [
                 {
@@ -120,6 +122,12 @@ class DetectedChatter:
             "notes": self.notes,
         }
 
+    @property
+    def _refuting(self) -> OtherSpeed | None:
+        """Speed that the lines speak for where they speak against the stated one."""
+        other = self.evidence.other_speed
+        return other if other is not None and other.doubt == REFUTED else None
+
     def _mode(self) -> dict[str, Any] | None:
         mode = None if self.advice is None else self.advice.mode
         return None if mode is None else {"number": mode.number, "frequency_Hz": mode.frequency}
@@ -129,6 +137,8 @@ class DetectedChatter:
         """What the reader should know."""
         notes = []
         revolution = self.evidence.revolution
+        if self._refuting is not None and self.given is not None:
+            notes.append(in_words_of(self._refuting, self.given))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given
             if abs(ratio - 1.0) > _DIFFERS:
@@ -156,6 +166,16 @@ class DetectedChatter:
         return write_results(
             folder, {"detection.json": as_json(self.summary())}, {"detection.png": self.plot()}
         )
+
+
+def in_words_of(other: OtherSpeed, stated: float) -> str:
+    """That the lines speak for another speed than the stated one, Hz."""
+    return (
+        f"the record speaks for {60.0 * other.frequency:.0f} rpm, {60.0 * stated:.0f} rpm were "
+        f"stated: its lines are {other.spacing:.1f} Hz apart. That would be an override of "
+        f"{other.frequency / stated:.0%}, another cut, or another number of teeth: state "
+        "--spindle-speed and --teeth as they were"
+    )
 
 
 def _by(revolution) -> str:

@@ -6,12 +6,14 @@ module               responsibility
 recording            `Recording`: channels over time, what they are of
 spectra              power spectra of short frames, their noise floor
 revolution_frequency frequency of the spindle by the spacing of lines, or by a tacho
+stated_speed         whether the lines speak for another speed than the stated one
 chatter_lines        the strongest line off the harmonics: its share, its sidebands
 activity             frames in which nothing is cut
 frame_evidence       all of this over the frames of a recording
 envelope             whether a line is a limit cycle or a mode that noise shakes
 line_of_cut          whether a line is that of a cut that chatters, or of the machine
 segments             segments of one verdict, their frequency, bifurcation and confidence
+two_speeds           the same where the lines speak for another speed than the stated one
 running_detection    a verdict every revolution while a recording goes on
 ==================== =========================================================================
 """

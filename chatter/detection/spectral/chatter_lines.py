@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 #: lowest chatter frequency that is searched, in revolutions
-_LOWEST_ORDER = 1.5
+LOWEST_ORDER = 1.5
 #: sidebands of a chatter line to each side, and of its double
 _SIDEBANDS = 3
 #: logarithm above the floor at which a line counts to the family of the chatter line
@@ -54,7 +54,7 @@ NONE = ChatterLine(float("nan"), 0.0, 0.0, 0.0)
 
 def strongest_line(power: Array, above: Array, frequency: Array, comb: Comb) -> ChatterLine:
     """Strongest line off the harmonics of a spectrum (b,) with its logarithm above the floor."""
-    searched = frequency > _LOWEST_ORDER * comb.revolution
+    searched = frequency > LOWEST_ORDER * comb.revolution
     free = searched & comb.off(frequency)
     total = float(power[searched].sum())
     if not free.any() or total <= 0.0:

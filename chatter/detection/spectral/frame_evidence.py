@@ -15,8 +15,11 @@ from chatter.detection.spectral.revolution_frequency import (
     about_given,
     from_spectrum,
     from_tacho,
+    over_frames,
+    stated_alone,
 )
 from chatter.detection.spectral.spectra import Frames, frames_of
+from chatter.detection.spectral.stated_speed import REFUTED, LinesOfRecord, OtherSpeed
 
 Array = NDArray[np.float64]
 
@@ -57,6 +60,8 @@ class Evidence:
     recording : Recording
     rest : (b,) array of float or None
         Power spectrum where nothing is cut; None where no frame shows it.
+    other_speed : OtherSpeed or None
+        That the lines speak for, against the one that was stated.
     """
 
     frames: Frames
@@ -68,6 +73,7 @@ class Evidence:
     silent: NDArray[np.bool_]
     recording: Recording
     rest: Array | None
+    other_speed: OtherSpeed | None = None
 
     def comb(self, row: int) -> Comb:
         """Harmonics of the spindle in a frame."""
@@ -99,7 +105,14 @@ def evidence_of(
         Hz, as set; None where it is not known.
     teeth : int or None
     """
-    frames, revolution = _with_speed(recording, spindle_frequency, teeth)
+    frames, revolution, other = _with_speed(recording, spindle_frequency, teeth)
+    return replace(_with_lines(recording, frames, revolution, teeth), other_speed=other)
+
+
+def evidence_at(recording: Recording, frequency: float, teeth: int | None) -> Evidence:
+    """The same with a speed, Hz, that the lines show: no other is sought."""
+    frames, long = _frames(recording, frequency, _REVOLUTIONS), _frames(recording, frequency, _LONG)
+    revolution = about_given(long, frames, frequency, teeth or 1)
     return _with_lines(recording, frames, revolution, teeth)
 
 
@@ -143,8 +156,8 @@ def _with_lines(
 
 def _with_speed(
     recording: Recording, given: float | None, teeth: int | None
-) -> tuple[Frames, Revolution | None]:
-    """Frames of so many revolutions, and the speed over them."""
+) -> tuple[Frames, Revolution | None, OtherSpeed | None]:
+    """Frames of so many revolutions, the speed over them, and another that the lines speak for."""
     if given is not None:
         frames = _frames(recording, given, _REVOLUTIONS)
     else:
@@ -155,16 +168,31 @@ def _with_speed(
         if found is not None:
             frames = _frames(recording, found.mean, _REVOLUTIONS)
             again = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
-            return frames, again
+            return frames, again, None
     if given is not None:
-        long = _frames(recording, given, _LONG)
-        return frames, about_given(long, frames, given, teeth or 1)
-    found = from_spectrum(frames, teeth)
-    if found is None:
-        return frames, None
-    frames, long = _frames(recording, found, _REVOLUTIONS), _frames(recording, found, _LONG)
-    again = about_given(long, frames, found, teeth or 1)
-    return frames, again._replace(source="spectrum", may_be_multiple=True)
+        return frames, *_stated_speed(recording, frames, given, teeth)
+    spacing = from_spectrum(frames, teeth)
+    if spacing is None:
+        return frames, None, None
+    frames, long = _frames(recording, spacing, _REVOLUTIONS), _frames(recording, spacing, _LONG)
+    revolution = about_given(long, frames, spacing, teeth or 1)
+    return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
+
+
+def _stated_speed(
+    recording: Recording, frames: Frames, given: float, teeth: int | None
+) -> tuple[Revolution, OtherSpeed | None]:
+    """Speed that was stated, Hz, as the lines correct it, and another that they speak for."""
+    long = _frames(recording, given, _LONG)
+    lines = LinesOfRecord(long, given, teeth)
+    other = lines.other_speed()
+    if other is not None and other.doubt == REFUTED:
+        return stated_alone(frames, given), other
+    revolution = about_given(long, frames, given, teeth or 1)
+    corrected = lines.corrected(revolution.mean)
+    if corrected != revolution.mean:
+        revolution = over_frames(frames, corrected, teeth or 1)
+    return revolution, other
 
 
 def _frames(recording: Recording, frequency: float, most: float) -> Frames:

@@ -122,11 +122,16 @@ def about_given(long: Frames, frames: Frames, given: float, teeth: int) -> Revol
         everywhere, long.step, given * (1.0 - _NEAR_GIVEN), given * (1.0 + _NEAR_GIVEN), teeth
     )
     if not found.significance > _PLAUSIBLE:
-        return Revolution(np.full(frames.time.size, given), _GIVEN, "given", given)
+        return stated_alone(frames, given)
     mean = near.frequency
     if found.score > _BETTER * near.score and _explains_more(long, found, near, teeth):
         mean = found.frequency
-    return _over_frames(frames, mean, teeth, "given, refined by the spectrum")
+    return over_frames(frames, mean, teeth)
+
+
+def stated_alone(frames: Frames, given: float) -> Revolution:
+    """Frequency as it was stated, Hz, which no lines confirm."""
+    return Revolution(np.full(frames.time.size, given), _GIVEN, "given", given)
 
 
 def _explains_more(frames: Frames, one: Spacing, other: Spacing, teeth: int) -> bool:
@@ -143,6 +148,11 @@ def _explains_more(frames: Frames, one: Spacing, other: Spacing, teeth: int) -> 
     return first > second
 
 
+def slowest_of(frames: Frames) -> float:
+    """Smallest spacing, Hz, at which the lines of the frames are told from each other."""
+    return max(_SLOWEST, 3.0 * frames.half_width)
+
+
 def from_spectrum(frames: Frames, teeth: int | None) -> float | None:
     """Frequency, Hz, by the spacing of lines alone; None where no spacing stands out.
 
@@ -150,7 +160,7 @@ def from_spectrum(frames: Frames, teeth: int | None) -> float | None:
     lines of their own, which runout and unequal inserts bring.
     """
     everywhere = line_autocorrelations(frames).sum(axis=0)
-    slowest = max(_SLOWEST, 3.0 * frames.half_width)
+    slowest = slowest_of(frames)
     found = best_spacing(everywhere, frames.step, slowest, _FASTEST, 1)
     if not found.significance > CERTAIN:
         return None
@@ -195,9 +205,9 @@ def _has_own_lines(autocorrelation: Array, step: float, spacing: float, parts: i
     return bool(own > others.mean() + _PLAUSIBLE * max(float(others.std()), 1e-12))
 
 
-def _over_frames(frames: Frames, mean: float, teeth: int, source: str) -> Revolution:
+def over_frames(frames: Frames, mean: float, teeth: int) -> Revolution:
     """Follow the spacing from frame to frame where another than the mean is certain."""
-    count = frames.time.size
+    count, source = frames.time.size, "given, refined by the spectrum"
     found = np.full(count, np.nan)
     each = line_autocorrelations(frames)
     for row in range(count):

@@ -1,0 +1,196 @@
+"""Segments of a recording whose lines speak for another spindle speed than the stated one.
+
+A cut is called stable only where it is so at both speeds. Chatter is found at the speed of the
+lines, for the harmonics of another one are lines off a comb that is not theirs.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from chatter.detection.spectral.chatter_lines import LOWEST_ORDER
+from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence, evidence_at
+from chatter.detection.spectral.segments import (
+    CHATTER,
+    IDLE,
+    NOT_JUDGED,
+    STABLE,
+    Segment,
+    segments_of,
+)
+from chatter.detection.spectral.spectra import mean_of
+from chatter.detection.spectral.stated_speed import FASTER, REFUTED
+
+#: confidence of a verdict, at the most, while the speed is in doubt
+_IN_DOUBT = 0.7
+#: of chatter, at the most, that another speed has as stable
+_UNCERTAIN = 0.5
+#: share of the power of the lines that the harmonics hold of a stable cut, at the least, and the
+#: logarithm above the floor from which a bin counts to a line
+_ON_HARMONICS, _STANDS_OUT = 0.5, 2.0
+#: relative difference of speeds that are the same
+_SAME = 5e-3
+
+
+def judged(evidence: Evidence) -> list[Segment]:
+    """Segments of a recording, in order, without gaps, with a verdict that the speed bears.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    """
+    own = segments_of(evidence)
+    if not any(one.verdict == CHATTER for one in own):
+        own = [_supported(one, evidence) for one in own]
+    other = evidence.other_speed
+    if other is None:
+        return own
+    if other.doubt == REFUTED:
+        return _of_two_speeds(evidence, own)
+    if other.doubt == FASTER and CHATTER in {one.verdict for one in own}:
+        return own
+    found = segments_of(evidence_at(evidence.recording, other.frequency, evidence.teeth))
+    if other.doubt == FASTER:
+        return _stable_at_both(evidence, own, found)
+    return _joined(_maybe_of_slower(stated, one, evidence) for stated, one in _together(own, found))
+
+
+def _supported(segment: Segment, evidence: Evidence) -> Segment:
+    """What is stable where the harmonics hold the lines; not judged where they do not.
+
+    Several lines that are none of them large are off the harmonics of a speed that is not true.
+    """
+    if segment.verdict != STABLE:
+        return segment
+    time = evidence.frames.time
+    rows = np.flatnonzero((time >= segment.begin) & (time <= segment.end))
+    share = share_on_harmonics(evidence, slice(rows[0], rows[-1] + 1)) if rows.size else 1.0
+    if share >= _ON_HARMONICS:
+        return segment
+    reason = (
+        f"{1.0 - share:.0%} of the power of the lines is off the harmonics of "
+        f"{60.0 * segment.spindle_frequency:.0f} rpm, at several frequencies: the speed may be "
+        "another"
+    )
+    return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
+
+
+def share_on_harmonics(evidence: Evidence, rows: slice) -> float:
+    """Share of the power of the lines of some frames that is on the harmonics of the spindle.
+
+    Lines are what stands above the floor, and far above what is there at rest.
+    """
+    frames = evidence.frames
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    power, above = mean_of(frames, rows)
+    lines = (above > _STANDS_OUT) & (frames.frequency > LOWEST_ORDER * comb.revolution)
+    if evidence.rest is not None:
+        lines &= power > RATIO_AT_REST * evidence.rest
+    total = float(power[lines].sum())
+    return 1.0 if total <= 0.0 else float(power[lines & ~comb.off(frames.frequency)].sum()) / total
+
+
+def _stable_at_both(evidence: Evidence, own: list[Segment], faster: list[Segment]) -> list[Segment]:
+    """What is stable as stated is so no more where a multiple of that speed has chatter."""
+    if not any(one.verdict == CHATTER for one in faster):
+        return own
+    return _joined(
+        stated if stated.verdict == one.verdict == IDLE else _disagreeing(stated, one, evidence)
+        for stated, one in _together(own, faster)
+    )
+
+
+def _maybe_of_slower(stated: Segment, slower: Segment, evidence: Evidence) -> Segment:
+    """Chatter that a slower spindle makes a cut without it is not certain."""
+    if stated.verdict == slower.verdict or stated.verdict == NOT_JUDGED:
+        return stated
+    if stated.verdict != CHATTER:
+        return _disagreeing(stated, slower, evidence) if slower.verdict == CHATTER else stated
+    reason = (
+        f"{stated.reason}; its lines may be harmonics of a cut without chatter at "
+        f"{60.0 * evidence.other_speed.frequency:.0f} rpm"
+    )
+    return replace(stated, confidence=min(stated.confidence, _UNCERTAIN), reason=reason)
+
+
+def _of_two_speeds(evidence: Evidence, own: list[Segment]) -> list[Segment]:
+    """Verdict of both speeds where they agree; chatter at that of the lines stays chatter."""
+    other = evidence.other_speed
+    found = segments_of(evidence_at(evidence.recording, other.frequency, evidence.teeth))
+    slowest = other.spacing / (evidence.teeth or 1)
+    # chatter that is none where the lines are those of the teeth is a harmonic of the spindle
+    if slowest < (1.0 - _SAME) * other.frequency:
+        finest = segments_of(evidence_at(evidence.recording, slowest, evidence.teeth))
+        found = [
+            _disagreeing(fine, one, evidence)
+            if one.verdict == CHATTER and fine.verdict != CHATTER
+            else one
+            for fine, one in _together(finest, found)
+        ]
+    pairs = _together(own, found)
+    agree = all(
+        one.verdict in (CHATTER, stated.verdict) or stated.verdict == IDLE for stated, one in pairs
+    )
+    return _joined(_of_pair(stated, one, evidence, agree) for stated, one in pairs)
+
+
+def _of_pair(stated: Segment, found: Segment, evidence: Evidence, agree: bool) -> Segment:
+    if stated.verdict == IDLE and evidence.rest is not None:
+        return stated  # by its level, which no speed changes
+    if found.verdict == CHATTER:
+        return replace(
+            found,
+            confidence=min(found.confidence, _IN_DOUBT),
+            reason=f"{found.reason}, at the {60.0 * evidence.other_speed.frequency:.0f} rpm that "
+            "the lines speak for",
+        )
+    if stated.verdict == found.verdict and (agree or found.verdict != STABLE):
+        return replace(stated, confidence=min(stated.confidence, found.confidence, _IN_DOUBT))
+    return _disagreeing(stated, found, evidence)
+
+
+def _disagreeing(stated: Segment, found: Segment, evidence: Evidence) -> Segment:
+    """Not judged, for the speeds have different verdicts."""
+    other = evidence.other_speed
+    was = evidence.revolution.mean
+    reason = (
+        f"{_verdict(found)} at {60.0 * other.frequency:.0f} rpm, which the lines speak for, and "
+        f"{_verdict(stated)} at {60.0 * was:.0f} rpm, as stated"
+    )
+    return replace(
+        stated, verdict=NOT_JUDGED, chatter_frequency=math.nan, bifurcation="none", confidence=0.0,
+        reason=reason,
+    )  # fmt: skip
+
+
+def _verdict(segment: Segment) -> str:
+    if segment.verdict == CHATTER:
+        return f"chatter at {segment.chatter_frequency:.1f} Hz"
+    return segment.verdict
+
+
+def _together(one: list[Segment], other: list[Segment]) -> list[tuple[Segment, Segment]]:
+    """Segments of both, cut where either changes."""
+    edges = sorted({s.begin for s in [*one, *other]})
+    edges.append(max(one[-1].end, other[-1].end))
+    found = []
+    for begin, end in itertools.pairwise(edges):
+        middle = 0.5 * (begin + end)
+        pair = [next(s for s in each if middle < s.end or s is each[-1]) for each in (one, other)]
+        found.append(tuple(replace(s, begin=begin, end=end) for s in pair))
+    return found
+
+
+def _joined(segments) -> list[Segment]:
+    """Neighbours that say the same are one."""
+    found: list[Segment] = []
+    for one in segments:
+        if found and replace(one, begin=0.0, end=0.0) == replace(found[-1], begin=0.0, end=0.0):
+            found[-1] = replace(found[-1], end=one.end)
+        else:
+            found.append(one)
+    return found

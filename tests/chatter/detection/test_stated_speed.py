@@ -1,0 +1,110 @@
+"""A spindle speed that is stated wrong: mistyped, an override, the record of another cut."""
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.detection.spectral.recording import Recording
+from tests.chatter.detection.made_recordings import (
+    RATE,
+    chatter_line,
+    clock,
+    during,
+    forced_cut,
+    machine,
+    noise,
+)
+from tests.places import EXAMPLES
+
+FACTORS = (0.5, 0.8, 0.9, 1.1, 1.2, 1.5, 2.0)
+#: speed, Hz, teeth and runout
+CUTS = [
+    (70.0, 1, 0.1), (50.0, 2, 0.1), (45.0, 3, 0.0), (50.0, 4, 0.1), (40.0, 5, 0.05), (30.0, 6, 0.2),
+]  # fmt: skip
+
+
+def cut(revolution, teeth, runout, chatters):
+    """A cut that chatters throughout 0.37 revolutions off a harmonic, or that does not."""
+    random = np.random.default_rng(int(revolution) + teeth)
+    time = clock(3.0)
+    values = forced_cut(random, time, revolution, teeth, runout) + noise(random, time)
+    if chatters:
+        frequency = (round(930.0 / revolution) + 0.37) * revolution
+        values = values + 1.8 * chatter_line(random, time, frequency, teeth * revolution)
+    return Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+
+
+def detected(recording, frequency, teeth):
+    return chatter.detect(recording, f"{60.0 * frequency} rpm", teeth)
+
+
+@pytest.mark.parametrize(("revolution", "teeth", "runout"), CUTS)
+def test_chatter_is_stable_at_no_speed(revolution, teeth, runout):
+    recording = cut(revolution, teeth, runout, chatters=True)
+    for factor in FACTORS:
+        found = detected(recording, factor * revolution, teeth)
+        assert found.verdict in ("chatter", "not judged"), (factor, found.segments)
+        assert not any(one.verdict == "stable" for one in found.segments)
+    assert detected(recording, revolution, teeth).verdict == "chatter"
+
+
+@pytest.mark.parametrize(("revolution", "teeth", "runout"), CUTS)
+def test_a_stable_cut_is_no_chatter_for_sure_at_a_wrong_speed(revolution, teeth, runout):
+    recording = cut(revolution, teeth, runout, chatters=False)
+    for factor in FACTORS:
+        found = detected(recording, factor * revolution, teeth)
+        for one in found.segments:
+            assert one.verdict != "chatter" or one.confidence <= 0.5, (factor, one)
+    assert detected(recording, revolution, teeth).verdict == "stable"
+
+
+@pytest.mark.parametrize(("factor", "override"), [(0.8, "125%"), (1.2, "83%"), (1.5, "67%")])
+def test_both_speeds_and_the_override_are_named(factor, override):
+    for teeth, chatters in ((4, False), (3, True)):
+        found = detected(cut(50.0, teeth, 0.1, chatters), factor * 50.0, teeth)
+        note = found.notes[0]
+        assert "the record speaks for 3000 rpm" in note
+        assert f"{3000.0 * factor:.0f} rpm were stated" in note
+        assert f"an override of {override}" in note
+        summary = found.summary()
+        assert summary["spindle_speed_of_lines_rpm"] == pytest.approx(3000.0, rel=2e-3)
+        assert all("3000 rpm" in one.reason for one in found.segments if one.verdict != "stable")
+
+
+@pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
+def test_a_speed_near_the_true_one_is_not_spoken_against(factor):
+    for chatters in (False, True):
+        found = detected(cut(50.0, 4, 0.1, chatters), factor * 50.0, 4)
+        assert found.verdict == ("chatter" if chatters else "stable")
+        assert found.summary()["spindle_speed_of_lines_rpm"] is None
+
+
+def test_a_record_without_a_comb_speaks_for_no_speed():
+    random = np.random.default_rng(2)
+    time = clock(3.0)
+    recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), noise(random, time)[:, None])
+    found = detected(recording, 50.0, 4)
+    assert found.verdict == "idle"
+    assert found.evidence.other_speed is None
+
+
+def test_idle_parts_stay_idle_at_a_wrong_speed():
+    random = np.random.default_rng(3)
+    time = clock(5.0)
+    values = during(time, 1.5, 4.0) * forced_cut(random, time, 50.0, 4, 0.1)
+    values = values + 0.02 * machine(random, time, 50.0) + noise(random, time, 0.03)
+    recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+    found = detected(recording, 60.0, 4)
+    assert [one.verdict for one in found.segments] == ["idle", "not judged", "idle"]
+    assert found.segments[0].end == pytest.approx(1.5, abs=0.3)
+
+
+@pytest.mark.parametrize(("depth", "verdict"), [("1 mm", "stable"), ("3 mm", "chatter")])
+def test_a_simulated_cut_is_stable_at_no_wrong_speed(depth, verdict):
+    case = chatter.load(EXAMPLES / "chattering-cut" / "case.toml")
+    result = chatter.simulate(case.patch({"cut.axial_depth": depth}))
+    values = result.rows[:, [0, 1]]
+    recording = Recording("cut", 0.6 / len(values), ("x", "y"), ("force",) * 2, values)
+    for factor in (0.8, 1.0, 1.2, 1.5):
+        found = chatter.detect(recording, f"{6000.0 * factor} rpm", 4).verdict
+        assert found in ((verdict,) if factor == 1.0 else (verdict, "not judged", "idle"))
