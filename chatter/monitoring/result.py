@@ -126,7 +126,7 @@ class DetectedChatter:
     def _refuting(self) -> OtherSpeed | None:
         """Speed that the lines speak for where they speak against the stated one."""
         other = self.evidence.other_speed
-        return other if other is not None and other.doubt == REFUTED else None
+        return other if other is not None and other.relation == REFUTED else None
 
     def _mode(self) -> dict[str, Any] | None:
         mode = None if self.advice is None else self.advice.mode

@@ -186,7 +186,7 @@ def _stated_speed(
     long = _frames(recording, given, _LONG)
     lines = LinesOfRecord(long, given, teeth)
     other = lines.other_speed()
-    if other is not None and other.doubt == REFUTED:
+    if other is not None and other.relation == REFUTED:
         return stated_alone(frames, given), other
     revolution = about_given(long, frames, given, teeth or 1)
     corrected = lines.corrected(revolution.mean)

@@ -76,7 +76,7 @@ class OtherSpeed(NamedTuple):
 
     frequency: float  # Hz, with as many teeth as were stated
     spacing: float  # Hz, of the lines
-    doubt: str  # `REFUTED`, `FASTER` or `SLOWER`
+    relation: str  # `REFUTED`, `FASTER` or `SLOWER`
 
 
 class LinesOfRecord:

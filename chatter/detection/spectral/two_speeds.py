@@ -49,12 +49,12 @@ def judged(evidence: Evidence) -> list[Segment]:
     other = evidence.other_speed
     if other is None:
         return own
-    if other.doubt == REFUTED:
+    if other.relation == REFUTED:
         return _of_two_speeds(evidence, own)
-    if other.doubt == FASTER and CHATTER in {one.verdict for one in own}:
+    if other.relation == FASTER and CHATTER in {one.verdict for one in own}:
         return own
     found = segments_of(evidence_at(evidence.recording, other.frequency, evidence.teeth))
-    if other.doubt == FASTER:
+    if other.relation == FASTER:
         return _stable_at_both(evidence, own, found)
     return _joined(_maybe_of_slower(stated, one, evidence) for stated, one in _together(own, found))
 
