@@ -129,11 +129,10 @@ class LinesOfRecord:
         each = [self._explanation(spacing, one) for one in self._divisors()]
         best = max(one.explained for one in each)
         coarse = next(one for one in each if one.explained >= _AS_GOOD * best)
-        speed = self._revolution(spacing) if coarse is each[0] else coarse.frequency
+        revolutions = self._revolutions(spacing)
+        speed = self._nearest(revolutions) if coarse is each[0] else coarse.frequency
         slower = [
-            one
-            for one in (spacing.frequency, speed)
-            if _is_multiple(own.frequency, one, _MOST_SLOWER)
+            one for one in (*revolutions, speed) if _is_multiple(own.frequency, one, _MOST_SLOWER)
         ]
         if slower and max(one.quality for one in each) > own.quality / _BETTER:
             return OtherSpeed(max(slower), spacing.frequency, SLOWER)
@@ -155,12 +154,21 @@ class LinesOfRecord:
             and without > _BETTER * other.spacing.score * self._explained(other.frequency, 0)
         )
 
-    def _revolution(self, spacing: Spacing) -> float:
-        """Speed of which a spacing is that of the teeth; of the revolution where they stand out."""
+    def _revolutions(self, spacing: Spacing) -> list[float]:
+        """Speeds of which a spacing may be that of the revolution or of the teeth, Hz.
+
+        It is that of the revolution where every so many lines stand out as those of teeth.
+        """
         if self._teeth is None:
-            each = [spacing.frequency / parts for parts in self._divisors()]
-            return min(each, key=lambda one: abs(math.log(one / self._stated)))
-        teeth = self._teeth
+            parts = self._divisors()
+            return [spacing.frequency, self._nearest([spacing.frequency / one for one in parts])]
+        if self._teeth_stand_out(spacing):
+            return [spacing.frequency]
+        return [spacing.frequency, spacing.frequency / self._teeth]
+
+    def _teeth_stand_out(self, spacing: Spacing) -> bool:
+        """Whether of lines at the multiples of a spacing those of the teeth are the larger."""
+        teeth = self._teeth or 1
         most = int(self._frames.frequency[-1] / spacing.frequency)
         orders = np.arange(1, min(most, _ORDERS * teeth) + 1)
         bins = np.round(orders * spacing.frequency / self._frames.step).astype(np.intp)
@@ -168,10 +176,13 @@ class LinesOfRecord:
         lines = self._above[bins[:, None] + np.arange(-1, 2)].max(axis=1)
         of_teeth = orders % teeth == 0
         if teeth == 1 or of_teeth.sum() < _FEWEST:
-            return spacing.frequency / teeth
+            return False
         others = float(np.median(lines[~of_teeth]))
-        stand_out = float(np.median(lines[of_teeth])) - others > _STANDS_OUT
-        return spacing.frequency if stand_out else spacing.frequency / teeth
+        return float(np.median(lines[of_teeth])) - others > _STANDS_OUT
+
+    def _nearest(self, speeds: list[float]) -> float:
+        """That of some speeds which is less far from the stated one, Hz."""
+        return min(speeds, key=lambda one: abs(math.log(one / self._stated)))
 
     def _spacing(self) -> Spacing:
         """Spacing of the lines, wherever it is: that of which all multiples are there."""
