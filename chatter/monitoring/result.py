@@ -91,7 +91,7 @@ class DetectedChatter:
 
     def summary(self) -> dict[str, Any]:
         """Content of detection.json."""
-        revolution, other = self.evidence.revolution, self._refuting
+        revolution, other = self.evidence.revolution, self.refuting_speed
         return {
             "recording": self.recording.name,
             "channels": list(self.recording.channels),
@@ -123,7 +123,7 @@ class DetectedChatter:
         }
 
     @property
-    def _refuting(self) -> OtherSpeed | None:
+    def refuting_speed(self) -> OtherSpeed | None:
         """Speed that the lines speak for where they speak against the stated one."""
         other = self.evidence.other_speed
         return other if other is not None and other.relation == REFUTED else None
@@ -137,8 +137,8 @@ class DetectedChatter:
         """What the reader should know."""
         notes = []
         revolution = self.evidence.revolution
-        if self._refuting is not None and self.given is not None:
-            notes.append(in_words_of(self._refuting, self.given))
+        if self.refuting_speed is not None and self.given is not None:
+            notes.append(in_words_of(self.refuting_speed, self.given))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given
             if abs(ratio - 1.0) > _DIFFERS:
@@ -146,7 +146,7 @@ class DetectedChatter:
                     f"the spindle runs at {60.0 * revolution.mean:.0f} rpm by the {_by(revolution)}"
                     f", {60.0 * self.given:.0f} rpm were stated"
                 )
-        if revolution is not None and revolution.source == "given":
+        if self.refuting_speed is None and revolution is not None and revolution.source == "given":
             notes.append("no spacing of lines confirms the spindle speed")
         if revolution is not None and revolution.may_be_multiple:
             notes.append(

@@ -49,6 +49,8 @@ def _title(found: DetectedChatter) -> str:
         words += f" at {found.chatter_frequency:.1f} Hz"
     if found.evidence.revolution is not None:
         words += f", {60.0 * found.evidence.revolution.mean:.0f} rpm"
+    if found.refuting_speed is not None:
+        words += f" as stated, {60.0 * found.refuting_speed.frequency:.0f} rpm by the lines"
     return words
 
 
@@ -114,7 +116,8 @@ def _draw_spectrum(axes: Axes, found: DetectedChatter, highest: float) -> None:
     level = level - level[shown].max()
     revolution = found.evidence.revolution
     if revolution is not None:
-        speed = float(np.median(revolution.frequency[rows]))
+        other = found.refuting_speed
+        speed = float(np.median(revolution.frequency[rows])) if other is None else other.frequency
         tooth = speed * (found.evidence.teeth or 1)
         for k, order in enumerate(np.arange(tooth, highest, tooth)):
             axes.axhline(

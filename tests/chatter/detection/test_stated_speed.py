@@ -71,6 +71,15 @@ def test_both_speeds_and_the_override_are_named(factor, override):
         assert all("3000 rpm" in one.reason for one in found.segments if one.verdict != "stable")
 
 
+def test_the_picture_shows_the_harmonics_of_the_speed_that_the_lines_speak_for():
+    figure = detected(cut(50.0, 4, 0.1, chatters=True), 60.0, 4).plot()
+    assert figure.get_suptitle().endswith("3600 rpm as stated, 3000 rpm by the lines")
+    (label,) = [
+        one for axes in figure.axes for one in axes.get_legend_handles_labels()[1] if "harm" in one
+    ]
+    assert float(label.split()[2]) == pytest.approx(200.0, rel=2e-3)
+
+
 @pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
 def test_a_speed_near_the_true_one_is_not_spoken_against(factor):
     for chatters in (False, True):
