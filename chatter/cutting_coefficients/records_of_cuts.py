@@ -9,6 +9,7 @@ from chatter.description.errors import InputError
 from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
+from chatter.io.formats.records import stated_record
 from chatter.io.signals import read_signals
 
 #: files of a folder that are named where it tells nothing of them
@@ -29,7 +30,7 @@ def read_records(
     refuse_other_file(path, "measurement")
     if path.is_dir() and not (path / "measurement.toml").is_file():
         raise InputError(_what_to_write(path))
-    is_record = path.is_file() and path.suffix.lower() != ".toml"
+    is_record = stated_record(path)[0].is_file() and path.suffix.lower() != ".toml"
     if not is_record:
         if columns is not None:
             raise InputError(f"{path}: --columns states the columns of one file of forces")

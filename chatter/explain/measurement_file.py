@@ -18,6 +18,7 @@ from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.limits import limits_of
 from chatter.explain.records.description import RecordDescription, record_of
+from chatter.io.formats.records import stated_record
 from chatter.io.signals import Signals, read_signals
 
 #: keys of [[run]] that are no override of the case
@@ -54,7 +55,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     unknown, or runs lack a channel.
     """
     path = Path(folder)
-    if path.is_file() and path.suffix.lower() != ".toml":
+    if stated_record(path)[0].is_file() and path.suffix.lower() != ".toml":
         return _only_run(path, case)
     if path.is_dir() and not (path / _DESCRIPTION).exists():
         raise InputError(_without_description(path))

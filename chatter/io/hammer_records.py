@@ -1,4 +1,4 @@
-"""Hammer records from files: one file, a folder of files."""
+"""Hammer records from files: a file of one or several, a folder of files."""
 
 import re
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.io.formats.format_list import formats_of
 from chatter.io.formats.units import Channel, channel_unit
-from chatter.io.stated_columns import read_signal_table
+from chatter.io.stated_columns import read_signal_table, read_signal_tables
 from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point
 from dynamics.frf.hammer.record import FEWEST_SAMPLES, HammerRecord
@@ -56,8 +56,32 @@ def read_hammer_record(
     MeasurementError if the file is no such table, its samples are not evenly spaced, or the
     response column cannot be told.
     """
-    path = Path(path)
-    table = read_signal_table(path, columns)
+    return _record_of(read_signal_table(Path(path), columns), response, sampling_rate)
+
+
+def read_hammer_records(
+    path: str | Path, columns: str | None = None, sampling_rate: float | None = None
+) -> HammerFolder:
+    """Read every hammer record of a file, which may hold several.
+
+    Each as `read_hammer_record` reads it. MeasurementError if the file holds no record.
+    """
+    records: list[HammerRecord] = []
+    unreadable: list[tuple[str, str]] = []
+    for table in read_signal_tables(Path(path), columns):
+        try:
+            records.append(_record_of(table, None, sampling_rate))
+        except MeasurementError as error:
+            reason = str(error).removeprefix(f"{table.path}: ")
+            unreadable.append((table.path.name, reason))
+    if not records:
+        raise MeasurementError(f"{path}: {unreadable[0][1]}")
+    return HammerFolder(tuple(records), tuple(unreadable))
+
+
+def _record_of(table: Table, response: str | None, sampling_rate: float | None) -> HammerRecord:
+    """Hammer record of a table."""
+    path = table.path
     if not any(column.unit or column.content for column in table.columns):
         raise MeasurementError(
             f"{path}: no heading with names and units above the numbers; "
@@ -97,8 +121,8 @@ def read_hammer_record(
 def is_hammer_record(path: Path, columns: str | None = None) -> bool:
     """Tell whether a file is a time record: it has a time, or a force and a motion, by units."""
     try:
-        table = read_signal_table(path, columns)
-        held = {_channel(path, column)[0] for column in table.columns}
+        tables = read_signal_tables(path, columns)
+        held = {_channel(path, column)[0] for table in tables for column in table.columns}
     except MeasurementError:
         return False
     return "time" in held or ("force" in held and bool(held & set(QUANTITY_OF_MOTION)))
@@ -145,7 +169,9 @@ def read_hammer_folder(
             passed_over.append(file.name)
             continue
         try:
-            records.append(read_hammer_record(file, None, columns, sampling_rate))
+            found = read_hammer_records(file, columns, sampling_rate)
+            records += found.records
+            unreadable += found.unreadable
         except MeasurementError as error:
             unreadable.append((file.name, str(error).removeprefix(f"{file}: ")))
     if not records:

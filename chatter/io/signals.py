@@ -10,7 +10,7 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.io.formats.format_list import format_of
 from chatter.io.headings import named
-from chatter.io.stated_columns import read_signal_table
+from chatter.io.stated_columns import read_signal_table, signals_of
 from chatter.io.table import Column, Table
 from dynamics.frf.container import Frf, MeasurementError
 
@@ -107,7 +107,7 @@ def _frf(path: Path, direction: str) -> Signals:
     one = format_of(path, "FRFs")
     if one.read_signals is not None:
         try:
-            signals = _with_parts(path, _in_si(one.read_signals(path), "frf"))
+            signals = _with_parts(path, _in_si(signals_of(one, path), "frf"))
         except (InputError, MeasurementError):
             signals = {}  # a table of another quantity, of several FRFs, or no table
         if {"frequency", "real", "imag"} <= signals.keys():

@@ -17,7 +17,7 @@ from chatter.io.hammer_records import (
     StatedRecord,
     is_hammer_record,
     read_hammer_folder,
-    read_hammer_record,
+    read_hammer_records,
 )
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
@@ -249,7 +249,11 @@ def _records(paths: Sequence[Path], stated: StatedRecord) -> HammerFolder | None
         return read_hammer_folder(paths[0], columns, rate)
     if columns is None and not all(is_hammer_record(p) and not _holds_frfs(p) for p in paths):
         return None
-    return HammerFolder(tuple(read_hammer_record(path, None, columns, rate) for path in paths))
+    read = [read_hammer_records(path, columns, rate) for path in paths]
+    return HammerFolder(
+        tuple(record for one in read for record in one.records),
+        tuple(named for one in read for named in one.unreadable),
+    )
 
 
 def _holds_frfs(path: Path) -> bool:

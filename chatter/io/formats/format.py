@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
@@ -29,6 +29,9 @@ class Format:
         Path -> list of Frf, in SI units, in the order of the file.
     read_signals : callable, optional
         Path -> Table: time records, or a table of points.
+    read_records : callable, optional
+        Path -> Tables by name, of a file that may hold several records; `read_signals` is then of
+        a file that holds one.
     read_matrices : callable, optional
         Path -> list of StoredMatrix: what the file holds, symmetric or not, in its own units.
     read_nodes : callable, optional
@@ -47,6 +50,7 @@ class Format:
     extensions: tuple[str, ...]
     read_frfs: Callable[[Path], list[Frf]] | None = None
     read_signals: Callable[[Path], Table] | None = None
+    read_records: Callable[[Path], Mapping[str, Table]] | None = None
     read_matrices: Callable[[Path], list[StoredMatrix]] | None = None
     read_nodes: Callable[[Path], StoredNodes] | None = None
     recognises: Callable[[bytes], bool] = lambda head: False  # noqa: ARG005

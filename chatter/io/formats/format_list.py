@@ -10,6 +10,7 @@ from chatter.io.formats.ansys import ANSYS_ARCHIVE, ANSYS_FULL
 from chatter.io.formats.csv import CSV
 from chatter.io.formats.cutpro import CUTPRO
 from chatter.io.formats.format import CONTENTS, Content, Format
+from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.lvm import LVM
 from chatter.io.formats.matlab import MATLAB
 from chatter.io.formats.matrix_market import MATRIX_MARKET
@@ -17,6 +18,7 @@ from chatter.io.formats.mr_configurator import MR_CONFIGURATOR
 from chatter.io.formats.nastran_bulk import NASTRAN_BULK
 from chatter.io.formats.npz import NPZ
 from chatter.io.formats.parquet import PARQUET
+from chatter.io.formats.records import record_of, stated_record
 from chatter.io.formats.sinumerik_trace import SINUMERIK_TRACE
 from chatter.io.formats.tdms import TDMS
 from chatter.io.formats.tncscope import TNCSCOPE
@@ -51,9 +53,10 @@ def listed(formats: list[Format]) -> str:
 def format_of(path: Path, content: Content) -> Format:
     """Tell the format of a file by its content where that is possible, else by its extension.
 
-    `content` is what is to be read of it. MeasurementError if the file is missing, a folder, empty,
-    too large, or of no known format.
+    `content` is what is to be read of it; the path may name one of its records. MeasurementError if
+    the file is missing, a folder, empty, too large, or of no known format.
     """
+    path, _ = stated_record(path)
     head = read_content(path, _HEAD_BYTES)
     candidates = formats_of(content)
     for one in candidates:
@@ -73,11 +76,15 @@ def format_of(path: Path, content: Content) -> Format:
 def read_frfs(path: str | Path) -> list[Frf]:
     """Read every FRF of a measured file, whatever its format.
 
-    At least one, in SI units, in the order of the file. MeasurementError if the file is missing, a
+    At least one, in SI units, in the order of the file, or those of the record that the path names,
+    as FILE#RECORD. MeasurementError if the file is missing, a
     folder, empty, of no known format, or malformed; the message names file, line and reason.
     """
     path = Path(path)
-    return format_of(path, "FRFs").read_frfs(path)
+    one, (file, record) = format_of(path, "FRFs"), stated_record(path)
+    if record and one.read_records is not None:
+        return frfs_of_table(record_of(file, one.read_records(file), record))
+    return one.read_frfs(file)
 
 
 def documentation() -> str:

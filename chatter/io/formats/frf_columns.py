@@ -1,7 +1,7 @@
 """FRFs of the columns of a table: real and imaginary part, or magnitude and phase."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
@@ -36,6 +36,11 @@ class _Parts:
 
     label: str
     columns: dict[str, tuple[int, Column]] = field(default_factory=dict)
+
+
+def frfs_of_tables(tables: Mapping[str, Table]) -> list[Frf]:
+    """FRFs of the records of a file, one after the other; see below."""
+    return [frf for table in tables.values() for frf in frfs_of_table(table)]
 
 
 def frfs_of_table(table: Table) -> list[Frf]:

@@ -7,19 +7,21 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
-from chatter.io.formats.frf_columns import frfs_of_table
-from chatter.io.table import Column, Table, table_of
+from chatter.io.formats.frf_columns import frfs_of_tables
+from chatter.io.formats.records import Tables, of_file, only_record
+from chatter.io.table import Column, Table, split_heading, table_of
 from dynamics.frf.container import MeasurementError
 
 #: properties of a channel that hold its unit
 _UNIT_PROPERTIES = ("unit_string", "NI_UnitDescription", "unit")
 
 
-def read_channels(path: Path) -> Table:
+def read_records(path: Path) -> Tables:
     """Channels of all groups, with the clock of their waveform where no channel is a time.
 
-    MeasurementError if npTDMS is not installed, the file is none that it reads, or channels differ
-    in length.
+    Groups of the same channels are a record each, by name; those of others are one.
+    MeasurementError if npTDMS is not installed, the file is none that it reads, or channels of a
+    record differ in length.
     """
     try:
         from nptdms import TdmsFile
@@ -27,21 +29,24 @@ def read_channels(path: Path) -> Table:
         raise MeasurementError(
             f'{path}: TDMS files are read with npTDMS: install "chatter[formats]"'
         ) from error
-    columns, clock = [], None
     try:
-        groups = [group for group in TdmsFile.read(path).groups() if group.channels()]
-        for group in groups:
-            for channel in group.channels():
-                columns.append(Column(_heading(channel), channel[:]))
-                clock = _clock(channel) if clock is None else clock
+        groups = {
+            group.name: [(_heading(one), one[:], _clock(one)) for one in group.channels()]
+            for group in TdmsFile.read(path).groups()
+            if group.channels()
+        }
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no TDMS file that can be read: {error}") from error
-    names = [column.name for column in columns]
-    if len(groups) > 1 and len(set(names)) < len(names):
-        raise MeasurementError(
-            f"{path}: the same channels stand in {len(groups)} groups "
-            f"({', '.join(group.name for group in groups[:5])}); save one record a file"
-        )
+    names = [split_heading(heading)[0] for one in groups.values() for heading, _, _ in one]
+    if len(set(names)) < len(names):
+        return of_file(path, {name: _table(path, one) for name, one in groups.items()})
+    return {"": _table(path, [channel for one in groups.values() for channel in one])}
+
+
+def _table(path: Path, channels: list[tuple[str, Array, Array | None]]) -> Table:
+    """Table of channels: heading, values and clock of each."""
+    columns = [Column(heading, values) for heading, values, _ in channels]
+    clock = next((one for _, _, one in channels if one is not None), None)
     has_time = any(column.name.lower() in ("time", "t") for column in columns)
     if clock is not None and not has_time:
         columns.insert(0, Column("time [s]", clock))
@@ -67,8 +72,10 @@ def _clock(channel: Any) -> Array | None:
 TDMS = Format(
     name="tdms",
     label="TDMS of LabVIEW",
-    help='channels with the property unit_string; needs "chatter[formats]"',
+    help="channels with the property unit_string; groups of the same channels are records; "
+    'needs "chatter[formats]"',
     extensions=(".tdms",),
-    read_frfs=lambda path: frfs_of_table(read_channels(path)),
-    read_signals=read_channels,
+    read_frfs=lambda path: frfs_of_tables(read_records(path)),
+    read_signals=only_record(read_records),
+    read_records=read_records,
 )

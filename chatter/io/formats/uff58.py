@@ -18,6 +18,7 @@ import numpy as np
 from chatter.description.arrays import Array, ComplexArray
 from chatter.description.units import measured_unit
 from chatter.io.formats.format import Format
+from chatter.io.formats.records import Tables, of_file, only_record
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
 from chatter.io.formats.universal import Dataset, FileUnits, file_units, is_universal, read_datasets
 from chatter.io.table import Column, Table
@@ -52,6 +53,8 @@ _DIRECTIONS = {0: "", 1: "x", 2: "y", 3: "z"}
 #: numbers a value takes by ordinate data type (record 7, field 1), and bytes a number
 _ORDINATE = {2: (1, 4), 4: (1, 8), 5: (2, 4), 6: (2, 8)}
 _HEADING_LINES = 11
+#: columns of a record of a single channel
+_TIME_AND_CHANNEL = 2
 _NUMBER = re.compile(r"[+-]?\d+\.?\d*(?:[Ee][+-]?\d+)?")
 
 
@@ -144,15 +147,15 @@ def read_frfs(path: Path) -> list[Frf]:
     return [_with_coherence(frf, coherences) for frf in frfs]
 
 
-def read_time_records(path: Path) -> Table:
+def read_time_records(path: Path) -> Tables:
     """Read every time record of a universal file: a column of time, then one a record.
 
-    MeasurementError if the file is cut short, malformed, or holds no time record, or records differ
-    in time.
+    Where a quantity of a point comes again, another record begins; they are numbered.
+    MeasurementError if the file is cut short, malformed, or holds no time record, or channels of a
+    record differ in time.
     """
-    columns: list[Column] = []
+    found: list[list[Column]] = []
     held: Counter[str] = Counter()
-    first = np.empty(0)
     for function in _functions(path, held):
         heading, where = function.heading, function.where
         abscissa, factor = _content(heading.abscissa, function.units, where)
@@ -161,15 +164,38 @@ def read_time_records(path: Path) -> Table:
             held[_described(heading)] += 1
             continue
         time, values = function.values()
-        if not columns:
-            first = time * factor
-            columns.append(Column("time [s]", first))
-        if time.size != first.size or not np.allclose(time * factor, first, rtol=1e-6, atol=1e-9):
+        time, column = time * factor, _record_column(function, values.real)
+        if not found or any(_is_again(one, column) for one in found[-1]):
+            found.append([Column("time [s]", time)])
+        first = np.asarray(found[-1][0].cells)
+        if time.size != first.size or not np.allclose(time, first, rtol=1e-6, atol=1e-9):
             raise MeasurementError(f"{where}: has other times than the first record")
-        columns.append(_record_column(function, values.real))
-    if not columns:
+        found[-1].append(column)
+    if not found:
         raise MeasurementError(f"{path}: holds no time record; it holds {_counted(held)}")
-    return Table(path, tuple(columns))
+    if len({len(columns) for columns in found}) > 1 or len(found[0]) == _TIME_AND_CHANNEL:
+        found = [_merged(path, found)]
+    tables = {str(k + 1): Table(path, tuple(columns)) for k, columns in enumerate(found)}
+    return of_file(path, tables)
+
+
+def _merged(path: Path, parts: list[list[Column]]) -> list[Column]:
+    """Channels of one record, some of which are of one quantity at one point."""
+    time = np.asarray(parts[0][0].cells)
+    for columns in parts[1:]:
+        other = np.asarray(columns[0].cells)
+        if other.size != time.size or not np.allclose(other, time, rtol=1e-6, atol=1e-9):
+            raise MeasurementError(
+                f"{path}: its time records differ in time and in their channels; "
+                "save one record a file"
+            )
+    return [*parts[0], *(column for columns in parts[1:] for column in columns[1:])]
+
+
+def _is_again(column: Column, other: Column) -> bool:
+    """Whether two columns are of one quantity at one point."""
+    same = column.content is not None and column.content == other.content
+    return same and column.point == other.point
 
 
 def _record_column(function: _Function, values: Array) -> Column:
@@ -413,6 +439,7 @@ UFF58 = Format(
     "dataset 164; others are passed over",
     extensions=(".uff", ".unv", ".uf"),
     read_frfs=read_frfs,
-    read_signals=read_time_records,
+    read_signals=only_record(read_time_records),
+    read_records=read_time_records,
     recognises=is_universal,
 )

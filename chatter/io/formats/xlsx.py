@@ -1,4 +1,4 @@
-"""Workbooks (XLSX), read by openpyxl: the table of one sheet, with its heading."""
+"""Workbooks (XLSX), read by openpyxl: the table of a sheet, with its heading."""
 
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -7,8 +7,9 @@ from typing import Any
 
 from chatter.io.formats.csv import table_of_lines
 from chatter.io.formats.format import Format
-from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.formats.frf_columns import frfs_of_tables
 from chatter.io.formats.named_arrays import require_size
+from chatter.io.formats.records import Tables, of_file, only_record
 from chatter.io.table import Table, is_number
 from dynamics.frf.container import MeasurementError
 
@@ -16,13 +17,13 @@ from dynamics.frf.container import MeasurementError
 _FAR_MORE = 10
 
 
-def read_workbook(path: Path) -> Table:
-    """Table of the one sheet that holds numbers; formulas as the values last computed.
+def read_sheets(path: Path) -> Tables:
+    """Tables of the sheets that hold numbers; formulas as the values last computed.
 
     Rows are read as the lines of a text: names and units above the numbers, on one line or two.
-    Of several sheets with numbers that one is read which has ten times as many rows as any other.
+    Where one sheet has ten times as many rows of numbers as any other it is the only record.
     MeasurementError if openpyxl is not installed, the file is no workbook, unpacks to too much, or
-    none or several of its sheets hold numbers.
+    no sheet holds a table of numbers.
     """
     try:
         import openpyxl
@@ -42,22 +43,33 @@ def read_workbook(path: Path) -> Table:
         raise
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no workbook that can be read: {error}") from error
-    return table_of_lines(path, sheets[_sheet_of_record(path, sheets)])
+    return of_file(path, _tables(path, sheets, _sheets_of_records(path, sheets)))
 
 
-def _sheet_of_record(path: Path, sheets: Mapping[str, Sequence[str]]) -> str:
-    """Name of the one sheet with rows of numbers, or of that with far more than any other."""
+def _tables(
+    path: Path, sheets: Mapping[str, Sequence[str]], names: Sequence[str]
+) -> dict[str, Table]:
+    """Tables of sheets by name; of several those that are no table are passed over."""
+    found, faults = {}, []
+    for name in names:
+        try:
+            found[name] = table_of_lines(path, sheets[name])
+        except MeasurementError as error:
+            faults.append(error)
+    if not found:
+        raise faults[0]
+    return found
+
+
+def _sheets_of_records(path: Path, sheets: Mapping[str, Sequence[str]]) -> list[str]:
+    """Names of the sheets with rows of numbers, or of that with far more than any other."""
     counts = {name: sum(map(_has_numbers, lines)) for name, lines in sheets.items()}
-    filled = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    filled = [name for name in counts if counts[name]]
     if not filled:
         raise MeasurementError(f"{path}: no sheet holds rows of numbers")
-    if len(filled) > 1 and counts[filled[0]] < _FAR_MORE * counts[filled[1]]:
-        names = ", ".join(name for name in sheets if counts[name])
-        raise MeasurementError(
-            f"{path}: {len(filled)} sheets hold rows of numbers ({names}); "
-            "keep one, or save the sheet as CSV"
-        )
-    return filled[0]
+    longest = max(filled, key=lambda name: counts[name])
+    others = max((counts[name] for name in filled if name != longest), default=0)
+    return [longest] if counts[longest] >= _FAR_MORE * others else filled
 
 
 def _lines(sheet: Any) -> list[str]:
@@ -82,8 +94,9 @@ def _has_numbers(line: str) -> bool:
 XLSX = Format(
     name="xlsx",
     label="workbook",
-    help='one sheet with names and units above the numbers; needs "chatter[formats]"',
+    help='sheets with names and units above the numbers, a record each; needs "chatter[formats]"',
     extensions=(".xlsx", ".xlsm"),
-    read_frfs=lambda path: frfs_of_table(read_workbook(path)),
-    read_signals=read_workbook,
+    read_frfs=lambda path: frfs_of_tables(read_sheets(path)),
+    read_signals=only_record(read_sheets),
+    read_records=read_sheets,
 )

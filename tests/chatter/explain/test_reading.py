@@ -295,3 +295,26 @@ def test_a_record_without_two_samples_is_told(tmp_path, rows):
     )
     with pytest.raises(InputError, match=r"a\.csv.*(2 are needed|no line of numbers)"):
         read_measurement(tmp_path)
+
+
+def test_runs_of_a_measurement_are_sheets_of_one_workbook(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for name, scale in {"slow": 1.0, "fast": 2.0}.items():
+        sheet = book.active if name == "slow" else book.create_sheet()
+        sheet.title = name
+        sheet.append(["time [s]", "Fx [kN]"])
+        for k in range(64):
+            sheet.append([1e-3 * k, scale * k])
+    book.save(tmp_path / "cuts.xlsx")
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "measurement.toml").write_text(
+        'kind = "milling"\ncase = "case.toml"\n[[run]]\nfile = "cuts.xlsx#slow"\n'
+        '[[run]]\nfile = "cuts.xlsx#2"\nspindle_speed = "4000 rpm"\n'
+    )
+    measured = read_measurement(tmp_path)
+    assert [run.name for run in measured.runs] == ["cuts.xlsx#slow", "cuts.xlsx#2"]
+    for run, scale in zip(measured.runs, (1.0, 2.0), strict=True):
+        np.testing.assert_allclose(run.signals["Fx"], 1e3 * scale * np.arange(64))
+    only = read_measurement(f"{tmp_path / 'cuts.xlsx'}#slow")
+    assert [run.name for run in only.runs] == ["cuts.xlsx#slow"]

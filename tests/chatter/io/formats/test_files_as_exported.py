@@ -110,8 +110,8 @@ def test_tdms_without_a_start_or_with_unit_descriptions(tmp_path):
     assert_is_the_record(read_hammer_record(described))
 
 
-def test_tdms_of_two_records_is_refused_by_the_names_of_its_groups(tmp_path):
-    with pytest.raises(MeasurementError, match=r"2 groups \(Blow 1, Blow 2\); save one record"):
+def test_one_record_of_tdms_with_two_groups_is_asked_for_by_their_names(tmp_path):
+    with pytest.raises(MeasurementError, match=r"2 records: Blow 1, Blow 2; name one, "):
         read_hammer_record(as_tdms(tmp_path / "a.tdms", "Blow 1", "Blow 2"))
 
 

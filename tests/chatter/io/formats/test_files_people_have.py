@@ -181,10 +181,10 @@ def test_workbook_with_units_on_their_own_line(tmp_path):
     assert_is_the_record(read_hammer_record(workbook(tmp_path / "a.xlsx", heading + RECORD_ROWS)))
 
 
-def test_workbook_with_two_tables_is_refused(tmp_path):
+def test_of_a_workbook_with_two_tables_one_is_asked_for(tmp_path):
     heading = [["Time [s]", "Force [N]", "Acc [m/s^2]"]]
     path = workbook(tmp_path / "a.xlsx", heading + RECORD_ROWS, ("tap 2", heading + RECORD_ROWS))
-    with pytest.raises(MeasurementError, match=r"2 sheets hold rows of numbers \(Sheet, tap 2\)"):
+    with pytest.raises(MeasurementError, match=r"2 records: Sheet, tap 2; name one, "):
         read(path)
 
 
