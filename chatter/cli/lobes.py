@@ -153,9 +153,8 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     ]
     if rows and diagram.resting_friction < 1.0:
         print_line(
-            "limits and pockets are those of frictions at rest as they vibrate "
-            "(structure.friction_amplitude); `chatter check` at a pocket says between which limits "
-            "they may be"
+            "pockets keep what frictions at rest may take of their limits, stuck or without them; "
+            "the curve is that of frictions as they vibrate (structure.friction_amplitude)"
         )
     if rows:
         print_table(

@@ -12,6 +12,8 @@ from chatter.description.errors import InputError
 from chatter.report.console import print_json, print_line
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from cutting.material.row import MaterialRow
 
 #: rows up to which a search prints all that is known of each
@@ -35,7 +37,7 @@ def materials(
     from cutting.material.table import MATERIALS, found_rows
 
     rows = MATERIALS if table is None else read_material_table(table)
-    found = found_rows(words or (), rows)
+    found = found_rows(_with_groups(words or ()), rows)
     if not found:
         family = words_of_family(" ".join(words or ()), rows)
         raise InputError(
@@ -50,6 +52,19 @@ def materials(
             print_line(line)
     if len(found) > _IN_FULL:
         print_line(f"{len(found)} rows; a search that finds up to {_IN_FULL} prints their sources")
+
+
+def _with_groups(words: Sequence[str]) -> list[str]:
+    """Words of a search, "iso K" as one, and so a letter alone: it is in the name of every row."""
+    found: list[str] = []
+    for word in words:
+        if len(word) == 1 and word.isalpha():
+            if found and found[-1].lower() == "iso":
+                found.pop()
+            found.append(f"iso {word}")
+        else:
+            found.append(word)
+    return found
 
 
 def _lines(name: str, row: MaterialRow, *, in_full: bool) -> list[str]:

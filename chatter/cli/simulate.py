@@ -96,7 +96,7 @@ def _print_summary(result: SimulationResult) -> None:
         f"{_speed(result.case)}, cutting speed {summary['cutting_speed_m_per_min']:.4g} "
         f"m/min{_speed_in_cut(result.case)}, "
         f"feed rate {to_digits(summary['feed_rate_mm_per_min'], 4)} mm/min; "
-        f"displacement {summary['peak_displacement_um']:.3g} um peak"
+        f"displacement {to_digits(summary['peak_displacement_um'], 3)} um peak"
     )
     _print_transient(summary)
     for line in _surface(summary, math.degrees(result.setup.cutter.edge_angle)):
@@ -135,14 +135,14 @@ def _surface(summary: dict, edge_angle: float) -> list[str]:
     name = "wall" if edge_angle > _UPRIGHT else f"shoulder at {edge_angle:.3g} deg"
     lines = []
     if wall is not None:
-        error = f"surface location error {wall:.3g} um (too {_removed(wall)} removed)"
+        error = f"surface location error {to_digits(wall, 3)} um (too {_removed(wall)} removed)"
         lines.append(f"{name}: {error}{_roughness(rough['wall'])}")
     if floor is not None:
-        depth = f"{abs(floor):.3g} um too {'high' if floor < 0.0 else 'deep'}"
+        depth = f"{to_digits(abs(floor), 3)} um too {'high' if floor < 0.0 else 'deep'}"
         lines.append(f"floor: {depth}{_roughness(rough['floor'])}")
     scallops = summary.get("scallop_height_um")
     if scallops is not None:
-        lines.append(f"between passes: scallops of {scallops:.3g} um")
+        lines.append(f"between passes: scallops of {to_digits(scallops, 3)} um")
     return lines if edge_angle > _UPRIGHT else lines[::-1]
 
 
@@ -154,7 +154,7 @@ def _removed(error: float) -> str:
 def _roughness(heights: dict) -> str:
     if heights["Ra_um"] is None:
         return ""
-    return f", Ra {heights['Ra_um']:.3g} um, Rz {heights['Rz_um']:.3g} um"
+    return f", Ra {to_digits(heights['Ra_um'], 3)} um, Rz {to_digits(heights['Rz_um'], 3)} um"
 
 
 def _print_transient(summary: dict) -> None:
@@ -163,7 +163,7 @@ def _print_transient(summary: dict) -> None:
     if start is None:
         return
     above = [
-        f"{start[key]:.4g} {unit}"
+        f"{to_digits(start[key], 4)} {unit}"
         for key, unit in (("peak_resultant_N", "N"), ("peak_displacement_um", "um"))
         if start[key] > _NOTABLE * summary[key]
     ]

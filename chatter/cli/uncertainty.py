@@ -75,6 +75,9 @@ def _print_probability(found: Uncertainty) -> None:
         f"a probability of {point['probability_of_stability']:.1%} (95 % confidence: {low:.1%} to "
         f"{high:.1%}, {summary['samples']} samples)"
     )
+    left = found.for_certain_in_words()
+    if left:
+        print_line(left)
     ends = [
         "none found" if limit[key] is None else f"{limit[key]:.4g} mm"
         for key in ("5_percent", "50_percent", "95_percent")

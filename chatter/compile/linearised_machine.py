@@ -98,7 +98,7 @@ class LinearisedMachine:
 
     def with_stuck(self) -> LinearisedMachine:
         """The same machine with the resting frictions stuck, as under vanishing vibration."""
-        return self.with_amplitude(0.0)
+        return self._stuck
 
     def with_amplitude(self, amplitude: float) -> LinearisedMachine:
         """The same machine with the resting frictions at vibration of an amplitude, m."""
@@ -106,6 +106,16 @@ class LinearisedMachine:
 
     def without_resting(self) -> LinearisedMachine:
         """The same machine with nothing in place of the frictions that rest."""
+        return self._without_resting
+
+    @cached_property
+    def _stuck(self) -> LinearisedMachine:
+        """As `with_stuck`: several limits ask for its receptance."""
+        return self.with_amplitude(0.0)
+
+    @cached_property
+    def _without_resting(self) -> LinearisedMachine:
+        """As `without_resting`, likewise."""
         return replace(self, excluded=(*self.excluded, *self.resting))
 
     @cached_property
@@ -168,6 +178,11 @@ class LinearisedMachine:
 
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Lines (m,) in Hz and relative receptance (m, 3, 3), without a fit, m/N."""
+        return self._receptance
+
+    @cached_property
+    def _receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """As `receptance`: every limit of the same state asks for it."""
         highest = _ABOVE * max(mode.frequency for mode in self._guess)
         lines = np.union1d(
             np.linspace(_LOWEST, highest, _LINES), lines_around(self._guess, _LOWEST, highest)

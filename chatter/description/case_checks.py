@@ -8,6 +8,9 @@ from chatter.description.sections.optimisation import Optimum
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
 
+#: m, which no tool cuts
+_NO_DEPTH = 0.5
+
 
 def depth_problems(cut: Cut | None, tool: Tool | None) -> list[tuple[str, str]]:
     """Check the axial depth against what the tool can cut.
@@ -17,7 +20,10 @@ def depth_problems(cut: Cut | None, tool: Tool | None) -> list[tuple[str, str]]:
     if cut is None or tool is None or cut.axial_depth <= tool.depth_that_tool_allows * (1.0 + 1e-9):
         return []
     depth, deepest = f"{cut.axial_depth * 1e3:g} mm", f"{tool.depth_that_tool_allows * 1e3:g} mm"
-    return [("cut.axial_depth", f"{depth} is more than tool.{tool.limiting_length}, {deepest}")]
+    # no tool cuts a metre deep: the number has no unit, or one that is not meant
+    meant = f'; is "{cut.axial_depth:g} mm" meant?' if cut.axial_depth >= _NO_DEPTH else ""
+    text = f"{depth} is more than tool.{tool.limiting_length}, {deepest}{meant}"
+    return [("cut.axial_depth", text)]
 
 
 def friction_problems(

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
 from chatter.description.case import Case, load
+from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
 
 Rest = ParamSpec("Rest")
 Result = TypeVar("Result")
@@ -20,6 +22,15 @@ def takes_case_or_path(
 
     @wraps(function)
     def taking(case: Case | str | Path, *args: Rest.args, **kwargs: Rest.kwargs) -> Result:
-        return function(load(case) if isinstance(case, (str, Path)) else case, *args, **kwargs)
+        return function(_case_of(case), *args, **kwargs)
 
     return taking
+
+
+def _case_of(given: Case | str | Path) -> Case:
+    """Case that is given, or that of its file; InputError for what is neither."""
+    if isinstance(given, (str, Path)):
+        return load(given)
+    if isinstance(given, Case):
+        return given
+    raise InputError(f"a case or the path of its file is required; {formatted(given)} is given")

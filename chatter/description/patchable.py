@@ -29,6 +29,7 @@ from chatter.description.path import (
 )
 from chatter.description.renamed import Renamed, rename, rename_patch
 from chatter.description.section import Section
+from chatter.description.stated_range import range_spelt_out
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
 from chatter.description.units import parse, write
@@ -283,7 +284,8 @@ class Description(Section):
         Parameters
         ----------
         values : mapping
-            Dotted path -> quantity text, number, text, list, table, or None to remove the key.
+            Dotted path -> quantity text, number, text, list, table, or None to remove the key; of
+            a table with from, to and count also "FROM..TO:COUNT".
             A bare number is SI and is written in the unit that stood there. Sections that are
             not there are made; a table one place past the end of a list is appended.
 
@@ -304,6 +306,7 @@ class Description(Section):
                 notes += renamed
                 self._check_known(steps)
                 unknown += self._newly_made(data, steps)
+                given = range_spelt_out(type(self), steps, given)
                 given = self._in_given_unit(data, steps, given)
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,8 @@ _FILL_ROWS, _FILL_COLUMNS = 1000, 1000
 #: beside 0 stable, 1 chatter
 _NOT_SEARCHED = 2
 _FILLS = (style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL)
+#: letters of a line below the picture
+_LINE_LENGTH = 100
 _NO_POCKET = "no pocket between these speeds"
 #: depth shown over the highest limit, the same where some speeds have none, and over the cut
 _ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
@@ -273,7 +276,10 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
     )
     if rows:
         return "\n".join([margin, *rows])
-    return "no pocket: " + diagram.why_no_pocket if diagram.why_no_pocket else _NO_POCKET
+    if not diagram.why_no_pocket:
+        return _NO_POCKET
+    # one long line would make the picture wider and squeeze its panels
+    return textwrap.fill("no pocket: " + diagram.why_no_pocket, _LINE_LENGTH)
 
 
 def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:

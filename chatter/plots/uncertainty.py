@@ -48,6 +48,8 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
     axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
     ends = found.interval
     label = f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})"
+    if found.for_certain_in_words():
+        label += f", for certain {found.least_probability:.1%}"
     style.mark_cut(axes, cut, label, color=style.RED if found.probability < 0.5 else style.GREEN)
     axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, _highest_depth(found, high, top)))
     axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")

@@ -30,9 +30,10 @@ from chatter.simulation.resolution import slices_of_inclined
 from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.neglected_effects import (
     CHATTER,
+    EDGE_FORCES,
     NOT_CERTAIN,
     STABLE,
     NeglectedEffect,
@@ -43,6 +44,7 @@ from chatter.stability.neglected_effects import (
     reasons_of,
 )
 from chatter.stability.registry import (
+    METHODS,
     chosen_method,
     fixed_steps,
     with_chatter_frequency,
@@ -50,7 +52,7 @@ from chatter.stability.registry import (
 )
 from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.stability.search_range import depths_at_one_speed
-from chatter.stability.stability_method import Multiplier
+from chatter.stability.stability_method import Multiplier, StabilityMethod
 from chatter.stability.steady_flank import about_steady_motion
 from cutting.engagement.immersion import slice_engagement
 
@@ -84,7 +86,7 @@ class StabilityCheck(NotebookResult):
     neglected : tuple of NeglectedEffect
         What the linear limit leaves out in this cut, with bounds of the true limit.
     radius_method : str
-        Name of the one that gave the spectral radius, and with it the verdict.
+        Name of the one that gave the spectral radius.
     """
 
     case: Case
@@ -105,8 +107,24 @@ class StabilityCheck(NotebookResult):
 
     @property
     def stable(self) -> bool:
-        """True where every small disturbance dies out, by the linear analysis."""
+        """True where every small disturbance dies out, by the linear analysis.
+
+        Where the limit is that of cuts in the time domain, it is the limit that decides.
+        """
+        if self.is_by_limit:
+            return self._is_below_limit
         return self.spectral_radius < 1.0
+
+    @property
+    def is_by_limit(self) -> bool:
+        """Whether the method takes account of what the linear analysis leaves out."""
+        return not METHODS[self.method].is_linear
+
+    @property
+    def _is_below_limit(self) -> bool:
+        """True where the depth of the cut lies in a stable interval of the limits."""
+        below = [one for one in self.limit.crossings[0] if one <= self.case.cut.axial_depth]
+        return len(below) % 2 == 0
 
     @property
     def deciding(self) -> tuple[NeglectedEffect, ...]:
@@ -124,12 +142,17 @@ class StabilityCheck(NotebookResult):
     @property
     def lowest_depth(self) -> float:
         """Least depth, m, at which the limit may lie by what the linear analysis leaves out."""
-        return self.critical_depth * lowest_factor(self.neglected)
+        factor = lowest_factor(self.neglected)
+        return self.critical_depth * factor if factor > 0.0 else 0.0
 
     @property
     def bifurcation(self) -> str:
         """Kind of the instability at the operating point; ``"none"`` where it is stable."""
-        return "none" if self.stable else bifurcation_of_multiplier(self.multiplier.value)
+        if self.stable:
+            return "none"
+        if self.is_by_limit:
+            return self.limit.bifurcation[0]
+        return bifurcation_of_multiplier(self.multiplier.value)
 
     @property
     def critical_depth(self) -> float:
@@ -188,10 +211,16 @@ class StabilityCheck(NotebookResult):
         frequency = self.chatter_frequency
         if not frequency > 0.0:
             return ""
-        return f", {frequency:.0f} Hz ({_KINDS[self.bifurcation]})"
+        kind = _KINDS.get(self.bifurcation)
+        return f", {frequency:.0f} Hz{f' ({kind})' if kind else ''}"
 
     def _bound(self) -> str:
-        """How far the limit next to the cut may lie from the linear one, where that is known."""
+        """How far the limit next to the cut may lie from the linear one, where that is known.
+
+        What frictions at rest make of it is in their own words.
+        """
+        if any(effect.name != EDGE_FORCES for effect in self.deciding):
+            return ""
         depth = self.case.cut.axial_depth
         if not self.stable:
             below = [limit for limit in self.limit.crossings[0] if limit <= depth]
@@ -303,7 +332,8 @@ def check(
     case : Case
     method : str, optional
         Gives the critical depth: name in `chatter.stability.registry.METHODS`, or "auto". The
-        spectral radius is that of the method where it gives one, else of collocation.
+        spectral radius is that of the method where it gives one, else of collocation. The verdict
+        goes by the spectral radius, with "time-domain" by the critical depth.
     progress : callable, optional
         Called with (done, total) points of the search for the critical depth.
 
@@ -328,14 +358,13 @@ def check(
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))
     judge = with_multiplier(chosen)
     multiplier = judge.multiplier(beside, steps)
-    frequency = np.nan
-    if abs(multiplier.value) >= 1.0:
-        frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
+    frequency = _chatter_frequency(chosen, beside, limit, multiplier)
     begin(progress, "what linear methods leave out")
     neglected = (
         *neglected_resting_friction(model),
         *neglected_in_steady_cut(model, chosen, limit.critical_depth),
     )
+    radius = abs(multiplier.value)
     return StabilityCheck(
         case=case,
         method=chosen.name,
@@ -345,28 +374,46 @@ def check(
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
-            *question_of_spectral_radius(abs(multiplier.value)),
+            *question_of_spectral_radius(radius),
             *question_of_flutes(case, float(limit.critical_depth[0])),
             *model.notes,
             *notes_of(neglected),
             *notes_on_dashpot(model, chosen),
-            *_notes_on_two_methods(case, limit, chosen.name, judge.name, abs(multiplier.value)),
+            *_notes_on_two_methods(case, limit, chosen, judge.name, radius),
         ),
         neglected=neglected,
         radius_method=judge.name,
     )
 
 
+def _chatter_frequency(
+    method: StabilityMethod, beside: MillingModel, limit: LimitCurve, multiplier: Multiplier
+) -> float:
+    """Hz, of the motion that grows; in the time domain that at the limit; nan where none does."""
+    if not method.is_linear:
+        return float(limit.chatter_frequency[0])
+    if abs(multiplier.value) < 1.0:
+        return np.nan
+    return with_chatter_frequency(method).chatter_frequency(beside)
+
+
 def _notes_on_two_methods(
-    case: Case, limit: LimitCurve, of_limit: str, of_verdict: str, radius: float
+    case: Case, limit: LimitCurve, method: StabilityMethod, of_radius: str, radius: float
 ) -> tuple[str, ...]:
     """Say that the limit of one method is on the other side of the cut than another one says."""
     below = sum(1 for one in limit.crossings[0] if one <= case.cut.axial_depth)
-    if of_limit == of_verdict or (below % 2 == 0) == (radius < 1.0):
+    of_limit = method.name
+    if of_limit == of_radius or (below % 2 == 0) == (radius < 1.0):
         return ()
     word, other = (STABLE, CHATTER) if radius < 1.0 else (CHATTER, STABLE)
+    if not method.is_linear:
+        return (
+            f"the linear analysis ({of_radius}, spectral radius {radius:.4g}) says {word}; the "
+            f"verdict is that of the time domain, `chatter check --method {of_radius}` says what "
+            "the linear analysis leaves out",
+        )
     return (
-        f"by its critical depth {of_limit} would say {other}; the verdict is by {of_verdict}, "
+        f"by its critical depth {of_limit} would say {other}; the verdict is by {of_radius}, "
         f"whose spectral radius says {word}: the limits of the two methods differ, and "
-        f"`chatter check --method {of_verdict}` has that one",
+        f"`chatter check --method {of_radius}` has that one",
     )

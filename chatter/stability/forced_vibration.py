@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
 from chatter.stability.edge_force_onset import (
     REPORTED_ONSET,
@@ -107,11 +108,13 @@ def _loss_of_contact(
         return ()
     if found.loss_of_contact < _REPORTED_LOSS and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
+    lengths = (found.amplitude, found.chip, found.chip_change)
+    amplitude, chip, change = (to_digits(length * 1e6, 3) for length in lengths)
     note = (
-        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of "
-        f"{found.amplitude * 1e6:.3g} um changes the chip of {found.chip * 1e6:.3g} um by up to "
-        f"{found.chip_change * 1e6:.3g} um: teeth lose contact over {found.loss_of_contact:.0%} of "
-        "their arc, which linear methods leave out; the limit in the time domain may differ "
+        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of {amplitude} um "
+        f"changes the chip of {chip} um by up to {change} um: teeth lose contact over "
+        f"{found.loss_of_contact:.0%} of their arc, which linear methods leave out; the limit in "
+        "the time domain may differ "
         "(--method time-domain)"
     )
     because = (
@@ -144,9 +147,10 @@ def neglected_edge_forces(
         because += f"may lower the limit by {share:.0%}"
     else:
         because += f"are {share:.3g} times as stiff as the chip{at}"
+    feed = to_digits(model.case.cut.feed_per_tooth * 1e6, 3)
     note = (
-        f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
-        "a tooth is zero, and vibration shifts these moments, which linear methods leave out: "
+        f"edge forces set in or end where the chip of {feed} um a tooth is "
+        "zero, and vibration shifts these moments, which linear methods leave out: "
         f"{because}; the time domain decides (--method time-domain)"
     )
     return (NeglectedEffect(EDGE_FORCES, share, lowest, highest, because, note, higher),)

@@ -20,7 +20,7 @@ from chatter.stability.pockets import depth_margin, find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
 from chatter.stability.resting_friction import (
-    lowest_limit_with_resting_friction,
+    limits_with_resting_friction,
     neglected_resting_friction,
 )
 from chatter.stability.search_range import (
@@ -77,8 +77,9 @@ def lobes(
         *neglected_in_steady_cut(model, chosen, limits.critical_depth),
     )
     margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
+    at_rest = limits_with_resting_friction(model, zero_order)
     pockets = find_pockets(
-        speeds, limits.critical_depth, max_depth, removal_area, depth_margin=margin
+        speeds, at_rest.bounded(limits.critical_depth), max_depth, removal_area, depth_margin=margin
     )
     begin(progress, "limit at the speed of the cut")
     operating = _operating_limit(model, chosen, max_depth, progress)
@@ -100,9 +101,7 @@ def lobes(
         neglected=neglected,
         operating=operating,
         lowest=lowest,
-        resting_friction=lowest_limit_with_resting_friction(
-            model, speeds, zero_order.lowest_depth
-        ),
+        resting_friction=at_rest.of_lowest,
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
         grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 from chatter.stability.model import MillingModel
 from chatter.stability.neglected_effects import NeglectedEffect
 
@@ -75,26 +76,42 @@ def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ..
     return (effect,)
 
 
-def lowest_limit_with_resting_friction(model: MillingModel, speeds: Array, here: float) -> float:
-    """Factor of the lowest limit over speeds, rad/s, that resting frictions leave of it at least.
+class LimitsAtRest(NamedTuple):
+    """What frictions at rest leave of limits at least, whether they stick or are not there."""
 
-    With them stuck or without, whichever is less, over the lowest zeroth-order limit as they are
-    taken, `here`, m; at most 1, and 1 where none rests.
+    of_lowest: float  # factor of the lowest limit over speeds, at most 1
+    here: Array  # zeroth-order limits at the speeds as the frictions are taken, m (n,)
+    least: Array  # the lower of those with them stuck and without them, m (n,)
+
+    def bounded(self, limits: Array) -> Array:
+        """Limits, m, at the speeds by any method, less what the frictions may take of them."""
+        known = np.isfinite(self.here)
+        share = np.where(known, self.least, np.inf) / np.where(known, self.here, 1.0)
+        return np.minimum(limits, np.where(known, limits * share, self.least))
+
+
+def limits_with_resting_friction(model: MillingModel, here: ZeroOrderLimit) -> LimitsAtRest:
+    """What resting frictions leave of limits over speeds: stuck or without, whichever is less.
+
+    By zeroth-order limits over those as the frictions are taken, `here`; 1 where none rests.
     """
+    all_of_it = LimitsAtRest(1.0, here.critical_depth, np.full(len(here.critical_depth), np.inf))
     if model.case.structure.machine is None:
-        return 1.0
+        return all_of_it
     from chatter.compile.linearised_machine import LinearisedMachine
 
     structure = model.structure
     if not isinstance(structure, LinearisedMachine) or not structure.resting:
-        return 1.0
-    if not math.isfinite(here):
-        return 1.0
-    changed = (structure.with_stuck(), structure.without_resting())
-    lowest = min(
-        zero_order_of(replace(model, structure=one), speeds).lowest_depth for one in changed
+        return all_of_it
+    if not math.isfinite(here.lowest_depth):
+        return all_of_it
+    stuck, free = (
+        zero_order_of(replace(model, structure=one), here.spindle_speed)
+        for one in (structure.with_stuck(), structure.without_resting())
     )
-    return min(1.0, lowest / here)
+    of_lowest = min(stuck.lowest_depth, free.lowest_depth) / here.lowest_depth
+    least = np.minimum(stuck.critical_depth, free.critical_depth)
+    return LimitsAtRest(min(1.0, of_lowest), here.critical_depth, least)
 
 
 def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:

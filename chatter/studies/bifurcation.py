@@ -29,12 +29,15 @@ from chatter.studies.linear_limits import (
     spectral_radius_or_nan,
 )
 from chatter.studies.model import fingerprint
+from chatter.studies.parameter_axis import axis_of
 from chatter.studies.result_cache import Execution, ResultCache
 from dynamics.modal.modes import Mode
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+#: cuts of a range that gives no number
+DEFAULT_CUTS = 60
 #: revolutions of every cut, and those at its end that are kept
 _REVOLUTIONS = 200.0
 _KEPT_REVOLUTIONS = 60
@@ -111,7 +114,7 @@ class BifurcationDiagram(SavedResult):
 
 @takes_case_or_path
 def bifurcation(
-    case: Case, path: str, values: Sequence[Any], **execution: Unpack[Execution]
+    case: Case, path: str, values: Sequence[Any] | str, **execution: Unpack[Execution]
 ) -> BifurcationDiagram:
     """Simulate a case over the values of one of its keys.
 
@@ -121,8 +124,9 @@ def bifurcation(
         Runs are 200 revolutions long where `[simulation]` does not say.
     path : str
         Dotted path, such as "cut.axial_depth" or "cut.spindle_speed".
-    values : sequence
-        Quantities as text, or numbers in SI.
+    values : sequence or str
+        Quantities as text, or numbers in SI; or a range as on the command line, such as
+        "1 mm..4 mm:60".
     **execution
         Folder, progress, resumed and cluster, as `chatter.studies.result_cache.Execution`.
 
@@ -137,11 +141,14 @@ def bifurcation(
     RunError
         If the study is interrupted; finished cuts are in the folder.
     """
+    if isinstance(values, str):
+        axis = axis_of(f"{path}={values}", case, "values", DEFAULT_CUTS)
+        values = [one.patch[axis.path] for one in axis.values]
     if len(values) == 0:
         raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
     if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
         case = case.patch({"simulation.revolutions": _REVOLUTIONS})
-    cases = [case.patch({path: value}) for value in values]
+    cases = _patched(case, path, values)
     on_machine = case.structure is not None and case.structure.machine is not None
     modes = None if on_machine or path.startswith("structure") else modes_of(case)[0]
     if modes == ():
@@ -157,6 +164,20 @@ def bifurcation(
     ]
     cuts = [Simulated(point.value, point.verdict, point.spectral_radius) for point in points]
     return BifurcationDiagram(case, path, tuple(points), linear_limits(case, path, cuts))
+
+
+def _patched(case: Case, path: str, values: Sequence[Any]) -> list[Case]:
+    """Case with each of the values; InputError with what is wrong with each of them, once."""
+    cases: list[Case] = []
+    problems: dict[str, None] = {}
+    for value in values:
+        try:
+            cases.append(case.patch({path: value}))
+        except InputError as error:
+            problems |= dict.fromkeys(error.messages)
+    if problems:
+        raise InputError(list(problems))
+    return cases
 
 
 def _record(path: str, modes: tuple[Mode, ...] | None, case: Case) -> dict[str, Any]:

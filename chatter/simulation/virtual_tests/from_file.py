@@ -19,6 +19,7 @@ from chatter.description.machine.frequency_response import (
     parse_tested_point,
 )
 from chatter.description.machine.machine_file import MachineFile
+from chatter.description.machine.machine_or_path import takes_machine_or_path
 from chatter.description.machine.move import MoveSection
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
@@ -87,6 +88,7 @@ def frfs(
     return FrfResult(file.title or file.name, curves)
 
 
+@takes_machine_or_path
 def frf(
     file: MachineFile, names: Sequence[str] | None = None, progress: Progress = no_progress
 ) -> FrfResult:
@@ -106,6 +108,7 @@ def frf(
     )
 
 
+@takes_machine_or_path
 def move(file: MachineFile, name: str, progress: Progress = no_progress) -> MoveResult:
     """Move that a machine file asks for, by name.
 

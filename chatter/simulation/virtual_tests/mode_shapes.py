@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
+from chatter.description.machine.machine_or_path import takes_machine_or_path
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, write_results
 from dynamics.reduction.modal_truncation import undamped_modes
@@ -78,6 +79,7 @@ class ModeShapes(NotebookResult):
         return [*written, path]
 
 
+@takes_machine_or_path
 def mode_shapes(file: MachineFile, count: int = 12) -> ModeShapes:
     """Mode shapes of a machine, of the lowest elastic modes.
 

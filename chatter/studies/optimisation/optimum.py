@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from chatter.description.case import Case
+from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text, finite_or_none
 from chatter.studies.optimisation.candidate import EASING, EASINGS, TIME_DOMAIN, Candidate
@@ -140,7 +141,8 @@ class Optimum(SavedResult):
             f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
             f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
             f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
-            f"{best.deflection * 1e6:.3g} um, surface error {best.surface_error * 1e6:.3g} um",
+            f"{to_digits(best.deflection * 1e6, 3)} um, "
+            f"surface error {to_digits(best.surface_error * 1e6, 3)} um",
         ]
         if known is not None:
             low, high = known.interval

@@ -15,6 +15,11 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text, finite_or_none
+from chatter.stability.forced_vibration import neglected_in_steady_cut
+from chatter.stability.model import milling_model
+from chatter.stability.neglected_effects import NeglectedEffect, lowest_factor, reasons_of
+from chatter.stability.registry import chosen_method
+from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
@@ -63,6 +68,8 @@ class Uncertainty(SavedResult):
     max_depth : float
         Deepest that was searched, m.
     seed : int
+    neglected : tuple of NeglectedEffect
+        What linear limits leave out in the cut with its mean values.
     """
 
     drawn_by: ClassVar[str] = "plots.uncertainty.plot_uncertainty"
@@ -77,6 +84,7 @@ class Uncertainty(SavedResult):
     stable: BooleanArray
     max_depth: float
     seed: int
+    neglected: tuple[NeglectedEffect, ...] = ()
 
     @property
     def probability(self) -> float:
@@ -105,6 +113,22 @@ class Uncertainty(SavedResult):
         stable = np.cumsum(self.stable)[counts - 1]
         pairs = zip(stable.tolist(), counts.tolist(), strict=True)
         return stable / counts, np.array([confidence_interval(*pair) for pair in pairs])
+
+    @property
+    def least_probability(self) -> float:
+        """Probability that the cut is stable whatever the linear limits leave out; 0 if unknown."""
+        kept = lowest_factor(self.neglected)
+        certain = self.stable & (self.operating * kept > self.case.cut.axial_depth)
+        return float(np.mean(certain)) if kept > 0.0 else 0.0
+
+    def for_certain_in_words(self) -> str:
+        """What is left of the probability by what linear limits leave out; empty where all is."""
+        lowering = [effect for effect in self.neglected if effect.lowest < 1.0]
+        least = self.least_probability
+        if not lowering or least == self.probability:
+            return ""
+        reasons = "; ".join(reasons_of(lowering, stable=True))
+        return f"for certain with {least:.1%} alone: {reasons}; `chatter simulate` decides"
 
     def shares(self) -> dict[str, float | None]:
         """Share of each parameter in the variance of the limit of the cut, to first order.
@@ -143,6 +167,8 @@ class Uncertainty(SavedResult):
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "probability_of_stability": self.probability,
                 "confidence_interval_95": list(self.interval),
+                "least_probability_of_stability": self.least_probability,
+                "neglected_effects": [effect.summary() for effect in self.neglected],
             },
             "limit_at_operating_speed_mm": {
                 **{
@@ -266,7 +292,14 @@ def uncertainty(
         stable=np.array([one.stable for one in found]),
         max_depth=float(grid.depths[-1]),
         seed=seed,
+        neglected=_neglected(case, method, np.array([one.operating for one in found])),
     )
+
+
+def _neglected(case: Case, method: str | None, limits: Array) -> tuple[NeglectedEffect, ...]:
+    """What linear limits, m, leave out in the cut with its mean values."""
+    model, chosen = milling_model(case), chosen_method(case, method)
+    return (*neglected_resting_friction(model), *neglected_in_steady_cut(model, chosen, limits))
 
 
 def _sample_record(

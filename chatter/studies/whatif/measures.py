@@ -13,6 +13,7 @@ from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
+from chatter.io.result_files import finite_or_none
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
@@ -99,6 +100,7 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
         {
             "critical_depth_mm": operating["critical_depth_mm"],
             "lowest_limit_mm": lowest["critical_depth_mm"],
+            "stable_below_mm": lowest["stable_below_mm"],
             "lowest_limit_speed_rpm": lowest["spindle_speed_rpm"],
             "max_axial_depth_mm": summary["max_axial_depth_mm"],
         },
@@ -111,12 +113,14 @@ def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Ou
     del only
     from chatter.stability.check import check
 
-    summary = check(case, method).summary()
+    found = check(case, method)
+    summary = found.summary()
     return Outcome(
         {
             "critical_depth_mm": summary["critical_depth_mm"],
             "chatter_frequency_Hz": summary["limit"]["chatter_frequency_Hz"],
             "spectral_radius": summary["spectral_radius"],
+            "certain_depth_mm": finite_or_none(found.lowest_depth * 1e3),
             "max_axial_depth_mm": summary["limit"]["max_axial_depth_mm"],
         },
         {"verdict": summary["verdict"]},
@@ -254,16 +258,33 @@ def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, s
 
 
 _CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="max_axial_depth_mm")
+_CERTAIN = Quantity(
+    "depth stable for certain at {speed}, whatever linear methods leave out",
+    "mm",
+    beyond="max_axial_depth_mm",
+)
+_CERTAIN_ANYWHERE = Quantity(
+    "depth stable for certain at any of the speeds", "mm", beyond="max_axial_depth_mm"
+)
 _LOWEST = Quantity("lowest critical depth over speed", "mm", beyond="max_axial_depth_mm")
 _CHATTER_FREQUENCY = Quantity("chatter frequency", "Hz")
 
 _MEASURES = (
-    Measure("lobes", {"critical_depth_mm": _CRITICAL, "lowest_limit_mm": _LOWEST}, _lobes),
+    Measure(
+        "lobes",
+        {
+            "critical_depth_mm": _CRITICAL,
+            "lowest_limit_mm": _LOWEST,
+            "stable_below_mm": _CERTAIN_ANYWHERE,
+        },
+        _lobes,
+    ),
     Measure(
         "critical depth",
         {
             "critical_depth_mm": _CRITICAL,
             "chatter_frequency_Hz": Quantity("chatter frequency at the limit", "Hz"),
+            "certain_depth_mm": _CERTAIN,
             "spectral_radius": Quantity("spectral radius of the cut", ""),
         },
         _critical_depth,

@@ -156,6 +156,7 @@ def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | No
 def _listed(path: str, pairs: list[tuple[str, Any]], kind: QuantityField | None) -> Variation:
     if len(pairs) > MOST_VALUES:
         raise InputError(f"{path}: {len(pairs)} values; at most {MOST_VALUES} are allowed")
+    _refuse_wrong(path, [given for _, given in pairs], kind)
     unit = _unit(path, [value for _, value in pairs], kind)
     dimension = kind.dimension if kind is not None else "number"
     values = []
@@ -173,6 +174,20 @@ def _listed(path: str, pairs: list[tuple[str, Any]], kind: QuantityField | None)
             label = f"{number:.6g} {unit}"
         values.append(Value(label, {path: given}, number))
     return Variation(path, tuple(values), unit)
+
+
+def _refuse_wrong(path: str, values: Iterable[Any], kind: QuantityField | None) -> None:
+    """Raise InputError with what is wrong with each of the values, not with the first alone."""
+    problems: list[str] = []
+    for given in values:
+        if kind is None or not isinstance(given, (int, float, str)):
+            continue
+        try:
+            _read(path, kind, given)
+        except InputError as error:
+            problems += error.messages
+    if problems:
+        raise InputError(problems)
 
 
 def _read(path: str, kind: QuantityField, given: Any) -> float:

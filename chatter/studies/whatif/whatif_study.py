@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
 from chatter.io.result_files import SavedResult, csv_of_rows
-from chatter.studies.model import fingerprint, patched
+from chatter.studies.model import fingerprint, load_model, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
 from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
@@ -108,7 +109,7 @@ def _cell(one: Variation, index: int | None) -> str:
 
 
 def whatif(
-    model: Model,
+    model: Model | str | Path,
     vary: Mapping[str, Sequence[Any] | str] | Sequence[Variation | str],
     result: str | None = None,
     *,
@@ -123,7 +124,7 @@ def whatif(
 
     Parameters
     ----------
-    model : Case or MachineFile
+    model : Case or MachineFile, or the path of its file
         Paths into the machine of a case begin with "machine.".
     vary : mapping of str to values, or sequence of str
         Path -> values (text with units, numbers in SI, None to take a key away), or texts as on
@@ -155,6 +156,8 @@ def whatif(
     RunError
         If every run fails, or the study is interrupted; finished points are in the folder.
     """
+    if isinstance(model, (str, Path)):
+        model = load_model(model)
     variations = _variations(model, vary, count)
     layout = chosen_layout(variations, tornado)
     measure = measure_of(result, model)
@@ -163,7 +166,7 @@ def whatif(
         known = ", ".join(measure.quantities)
         raise InputError(f'--quantity "{key}" is not known; {measure.name} has {known}')
     points = points_of(variations, layout)
-    models = [patched(model, point.patch) for point in points]
+    models = _models_of(model, points)
     evaluate = partial(_record, measure.name, method, tuple(only))
     with ResultCache(execution.get("folder"), measure.name, method or "", ",".join(only)) as cache:
         keys = [cache.key(fingerprint(each)) for each in models]
@@ -173,6 +176,20 @@ def whatif(
         raise InputError(messages) if messages else RunError(failure)
     outcomes = tuple(_outcome(record) for record in records)
     return WhatIf(model, variations, layout, measure, key, points, outcomes)
+
+
+def _models_of(model: Model, points: Sequence[DesignPoint]) -> list[Model]:
+    """Model of each point; InputError with what is wrong with each of them, once."""
+    models: list[Model] = []
+    problems: dict[str, None] = {}
+    for point in points:
+        try:
+            models.append(patched(model, point.patch))
+        except InputError as error:
+            problems |= dict.fromkeys(error.messages)
+    if problems:
+        raise InputError(list(problems))
+    return models
 
 
 def _record(

@@ -274,7 +274,7 @@ def test_the_picture_has_the_limit_of_the_linear_analysis():
         ("=1 mm..2 mm", ["--vary", "FROM..TO"]),
         ("cut.axial_dept=1 mm..2 mm", ["--vary", "cut.axial_dept"]),
         ("nothing=1..2", ["--vary", "nothing"]),
-        ("cut.axial_depth=1 kg..2 kg", ["--vary", "cut.axial_depth", "kg"]),
+        ("cut.axial_depth=1 kg..2 mm", ["--vary", "cut.axial_depth", "kg"]),
         ("cut.axial_depth=1 mm..", ["--vary", "cut.axial_depth"]),
         ("cut.axial_depth=1 mm..nan mm", ["--vary", "cut.axial_depth"]),
         ("cut.axial_depth=-1 mm..2 mm", ["cut.axial_depth"]),

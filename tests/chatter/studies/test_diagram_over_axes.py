@@ -227,7 +227,7 @@ def test_files_of_the_command(tmp_path):
         (["--x", "cut.radial_depth=1 mm..2 mm:1"], "count of 1"),
         (["--x", "cut.radial_depth=1 mm..2 mm:1e9"], "--x cut.radial_depth"),
         (["--x", "cut.radial_depth=1 mm"], "FROM..TO"),
-        (["--x", "cut.radial_depth=1 kg..2 kg"], "--x cut.radial_depth"),
+        (["--x", "cut.radial_depth=1 mm..2 kg"], "--x cut.radial_depth"),
         (["--x", "cut.radial_depth=1 mm.."], "--x cut.radial_depth"),
         (["--x", "cut.radial_depth=1 mm..20 mm:3"], "radial_depth"),
         (["--x", "cut.axial_depth=1 mm..2 mm"], "axial depth itself"),
