@@ -21,8 +21,11 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
+from chatter.description.case import Case
 from chatter.description.formatting import to_digits
+from chatter.description.usual_units import usual_unit
 from chatter.report.console import print_line, print_table
+from chatter.report.parameters import read_in
 
 if TYPE_CHECKING:
     from chatter.learning.learn import Learnt
@@ -69,29 +72,37 @@ def learn(options: LearnOptions) -> None:
             folder=folder,
         )
     print_coefficients(description)
-    present(found, folder, json=options.json, words=_print_learnt)
+    present(found, folder, json=options.json, words=_print_learnt, notes=found.notes)
 
 
 def _print_learnt(found: Learnt) -> None:
     summary = found.summary()
-    rows = [
-        [
-            one["path"],
-            f"{one['declared']['value']:.5g}",
-            to_digits(one["declared"]["standard_deviation"]),
-            f"{one['learnt']['median']:.5g}",
-            to_digits(one["learnt"]["standard_deviation"]),
-        ]
-        for one in summary["parameters"]
-    ]
-    title = f"learnt from {summary['tests']} tests (SI units)"
-    print_table(title, ["value", "declared", "+-", "learnt", "+-"], rows)
+    rows = [_row(one) for one in summary["parameters"]]
+    title = f"learnt from {summary['tests']} tests"
+    print_table(title, ["value", "unit", "declared", "learnt", "95 % interval"], rows)
     verdicts = summary["verdicts"]
     if verdicts["judged"]:
         print_line(
             f"{verdicts['right']} of {verdicts['judged']} verdicts are as the learnt case has them"
         )
     _print_next_cut(summary)
+
+
+def _row(one: dict) -> list[str]:
+    """Value with its unit, as declared and as learnt."""
+    declared, learnt = one["declared"], one["learnt"]
+    unit, factor = _read_in(one)
+    low, high = (f"{factor * end:.4g}" for end in learnt["ci95"])
+    deviation = to_digits(factor * declared["standard_deviation"])
+    before = f"{factor * declared['value']:.4g} +- {deviation}"
+    return [one["path"], unit, before, f"{factor * learnt['median']:.4g}", f"{low} to {high}"]
+
+
+def _read_in(one: dict) -> tuple[str, float]:
+    """Unit that people read a value in, and the number of it in one of SI."""
+    if one["unit"]:
+        return read_in(one["unit"], one["learnt"]["median"])
+    return usual_unit(Case, one["path"])
 
 
 def _print_next_cut(summary: dict) -> None:

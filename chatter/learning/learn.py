@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, csv_text, finite_or_none, short_repr, write_results
+from chatter.learning.contradictions import contradictions, surprises
 from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
@@ -39,6 +41,8 @@ _DEEPER, _ABOVE_MEDIAN = 1.4, 1.25
 #: first depth of the diagram over the lowest limit, where equal steps would be too coarse
 _BELOW_LOWEST = 0.4
 _LEVELS = (0.05, 0.5, 0.95)
+#: relative scatter of limits that no machine has from one test to the next
+_WIDE_SCATTER = 0.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -104,6 +108,19 @@ class Learnt:
         scatter = likelihood.scatter(self.after.counted)
         return likely_stable(margins, scatter[:, None]).mean(axis=0), runs[0].signals["stable"]
 
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """Tests that contradict each other or what was learnt."""
+        probability, _ = self.probability_of_tests()
+        notes = [*contradictions(self.measurement), *surprises(self.measurement, probability)]
+        scatter = float(np.median(self.after.columns()[SCATTER_OF_LIMITS]))
+        if scatter > _WIDE_SCATTER:
+            notes.append(
+                f"limits scatter by {scatter:.0%} from test to test, where some percent are usual: "
+                "the tests contradict each other, or the case lacks what they show"
+            )
+        return tuple(notes)
+
     def __repr__(self) -> str:
         """What the result is of: its arrays would fill the screen."""
         return short_repr(self)
@@ -128,6 +145,7 @@ class Learnt:
             },
             "largest_expected_information_bit": self.largest_information,
             "nothing_left_to_learn": self.is_learnt_out,
+            "notes": list(self.notes),
         }
 
     def _parameters(self) -> list[dict[str, Any]]:

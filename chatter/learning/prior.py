@@ -150,7 +150,7 @@ def prior_of(problem: Problem) -> Prior:
     found where there is none.
     """
     parameters = [_with_prior(one) for one in problem.parameters()]
-    parameters.append(KnownByFactor(SCATTER_OF_LIMITS, SCATTER, _SCATTER_SIZE))
+    parameters.append(KnownByFactor(SCATTER_OF_LIMITS, SCATTER, _SCATTER_SIZE, unit="1"))
     lower = np.array([_counted(one, one.lower, -np.inf) for one in parameters])
     upper = np.array([_counted(one, one.upper, np.inf) for one in parameters])
     names = tuple(f"{effect.name}." for effect in problem.effects)

@@ -16,15 +16,22 @@ _READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
     "N/m": ((0.0, "N/mm", 1e-3), (1e6, "N/um", 1e-6)),
     "m/s": ((0.0, "mm/s", 1e3),),
     "N/m/s": ((0.0, "N/mm/min", 60e-3),),
+    "1": ((0.0, "%", 100.0),),
     "1/s": ((0.0, "1/min", 60.0),),
 }
 
 
+def read_in(unit: str, value: float) -> tuple[str, float]:
+    """Unit in which a value of an SI unit is read, and its number in one of SI."""
+    found, factor = unit, 1.0
+    for least, name, of_si in _READ_IN.get(unit, ()):
+        if abs(value) >= least:
+            found, factor = name, of_si
+    return found, factor
+
+
 def parameter_row(name: str, one: Mapping[str, Any]) -> list[str]:
     """Name, value, unit and interval of a parameter, given as its value, SI unit and `ci95`."""
-    unit, factor = str(one["unit"]), 1.0
-    for least, read_in, of_si in _READ_IN.get(unit, ()):
-        if abs(one["value"]) >= least:
-            unit, factor = read_in, of_si
+    unit, factor = read_in(str(one["unit"]), one["value"])
     low, high = (f"{factor * end:.4g}" for end in one["ci95"])
     return [name, f"{factor * one['value']:.4g}", unit, f"{low} to {high}"]
