@@ -29,6 +29,13 @@ MODES = (
 )
 
 
+def two_modes_a_direction() -> chatter.Case:
+    """Case that is measured."""
+    keys = ("frequency", "damping", "mass", "direction")
+    modes = [dict(zip(keys, one, strict=True)) for one in MODES]
+    return chatter.load(CASE).patch({"structure.mode": modes})
+
+
 def memory() -> float:
     """Resident memory of this process, MB."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
@@ -41,9 +48,7 @@ def main() -> None:
     parser.add_argument("--moves", type=int, default=10_000)
     parser.add_argument("--timed", type=int, default=200)
     given = parser.parse_args()
-    keys = ("frequency", "damping", "mass", "direction")
-    modes = [dict(zip(keys, one, strict=True)) for one in MODES]
-    case = chatter.load(CASE).patch({"structure.mode": modes})
+    case = two_modes_a_direction()
     drawn = threading.Event()
 
     def show(change):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from chatter.app.followed_limits import FollowedLimits
 from chatter.app.sliders import Slider, case_sliders, checked_values, diagram_sliders
 from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.description.arrays import Array
@@ -14,12 +15,8 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
-from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.element_cut import element_cut
-from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
-from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.model import milling_model
 from chatter.stability.pockets import Pocket, find_pockets
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
@@ -28,10 +25,6 @@ from dynamics.modal.modes import inside_band
 #: stage -> speeds, depths of the grid
 STAGES = {"coarse": (96, 24), "fine": (200, 50)}
 _DRAWN_POINTS = 700
-#: points per element and wavelengths of the highest mode in one, enough for a picture
-_POINTS, _WAVELENGTHS = 6, 1.0
-_TOLERANCE = 5e-3
-_STRIDE = 8
 
 
 class LiveCase:
@@ -55,6 +48,7 @@ class LiveCase:
         max_depth = maximum_depth(case, zero_order_of(model, speeds))
         self.view = diagram_sliders((float(speeds[0]), float(speeds[-1])), max_depth)
         self.sliders = (*self.view, *case_sliders(case))
+        self._followed = FollowedLimits()
         self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
 
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
@@ -88,7 +82,7 @@ class LiveCase:
         speeds = np.linspace(*span, speed_count)
         depths = np.linspace(0.0, max_depth, depth_count + 1)[1:]
         follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
-        limits_of = _coarse_limits if follows else self._method.limits
+        limits_of = self._followed.limits if follows else self._method.limits
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
         inside = span[0] <= cut.spindle_speed <= span[1] and cut.axial_depth <= max_depth
@@ -212,15 +206,3 @@ def _numbers(values: Array) -> list[float | None]:
 def _number(value: float) -> float | None:
     """Value as the page shows it; None where there is none."""
     return float(f"{value:.7g}") if math.isfinite(value) else None
-
-
-def _coarse_limits(
-    model: MillingModel,
-    speeds: Array,
-    depths: Array,
-    steps: int | None,  # noqa: ARG001  (the signature of a method)
-    progress: Progress,
-) -> LimitCurve:
-    """Limits to 0.5 %, by continuation of the boundary: quick enough for a moving slider."""
-    cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
-    return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

@@ -54,12 +54,19 @@ def directional_matrix(
     (n, 3, 3) at angles (n,), rad, clockwise from +y, by the slopes of the force per edge length and
     radial motion, N/m^2 (or per velocity), (n,) or one for all.
     """
+    force, normal = _force_and_normal(angle, tangential, radial, axial)
+    return force[:, :, None] * normal[:, None, :]
+
+
+def _force_and_normal(
+    angle: NDArray[np.float64], tangential: ArrayLike, radial: ArrayLike, axial: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Vectors (n, 3) whose outer product is the directional matrix."""
     s, c = np.sin(angle), np.cos(angle)
     zero = np.zeros_like(s)
     kt, kr, ka = (np.asarray(k, dtype=np.float64) for k in (tangential, radial, axial))
     force = np.stack([kt * c + kr * s, -kt * s + kr * c, zero - ka], -1)
-    normal = np.stack([s, c, zero], -1)
-    return force[:, :, None] * normal[:, None, :]
+    return force, np.stack([s, c, zero], -1)
 
 
 def directional_table(
@@ -99,8 +106,8 @@ def directional_table(
 def _projected(
     angle: NDArray[np.float64], slope: NDArray[np.float64], directions: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    full = directional_matrix(angle, *slope)
-    return np.einsum("ai,nab,bj->nij", directions, full, directions)
+    force, normal = (part @ directions for part in _force_and_normal(angle, *slope))
+    return force[:, :, None] * normal[:, None, :]
 
 
 def _integrals(

@@ -1,6 +1,7 @@
 """Panel's server on the loopback interface, behind a random token; nothing comes from elsewhere."""
 
 import secrets
+import socket
 from pathlib import Path
 
 import panel as pn
@@ -50,6 +51,10 @@ class WorkbenchServer:
             )
         except OSError as error:
             raise InputError(f"--port {port} cannot be used: {error.strerror}") from None
+        # a message of Bokeh is several small writes: without this each waits 40 ms for the page's
+        # acknowledgement of the one before; what is accepted inherits it
+        for listening in self._server._http._sockets.values():
+            listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.port: int = self._server.port
         self.url = f"http://localhost:{self.port}/{token}/"
 

@@ -149,7 +149,6 @@ class StabilityView:
     def draw(self) -> None:
         """Draw the diagram of the values, first a coarse one."""
         values = self.moved()
-        self.same_call.object = self._same_call(values)
         self.computations.start(
             Computation(lambda go_on: self._compute(values, "coarse", go_on), False),
             Computation(lambda go_on: self._compute(values, "fine", go_on), True, _REST),
@@ -164,8 +163,12 @@ class StabilityView:
         )
 
     def _compute(self, values: dict[str, float], stage: str, go_on: Progress) -> None:
-        diagram = self._live.diagram(values, stage, go_on)
-        self._show(lambda: self._draw(diagram))
+        try:
+            diagram = self._live.diagram(values, stage, go_on)
+            self._show(lambda: self._draw(diagram))
+        finally:
+            # after the diagram, which is waited for
+            self._later(self.same_call, self._same_call(values))
 
     def _draw(self, diagram: dict[str, Any]) -> None:
         self._diagram, cut = diagram, diagram["operating"]
@@ -179,17 +182,21 @@ class StabilityView:
             "kind": diagram["bifurcation"],
         }
         found = diagram["pockets"]
-        self.pockets.data = {
+        pockets = {
             "speed": [one["spindle_speed_rpm"] for one in found],
             "depth": [one["axial_depth_mm"] for one in found],
             "limit": [one["critical_depth_mm"] for one in found],
             "rate": [one["removal_rate_cm3_per_min"] for one in found],
         }
-        self.operating.data = {
+        operating = {
             "speed": [cut["spindle_speed_rpm"]],
             "depth": [cut["axial_depth_mm"]],
             "colour": ["#2e7d32" if cut["stable"] else "#c62828"],
         }
+        # what stays is not sent again
+        for source, data in ((self.pockets, pockets), (self.operating, operating)):
+            if source.data != data:
+                source.data = data
         if self._beside is None:
             self._lobes.x_range.update(
                 start=diagram["spindle_speed_rpm"][0], end=diagram["spindle_speed_rpm"][-1]
@@ -285,6 +292,18 @@ class StabilityView:
         return drawn
 
 
+class _PromptFloat(pn.widgets.FloatSlider):
+    """Slider whose value is taken at once: Panel gathers those of others for 50 ms."""
+
+    _priority_changes = ("value",)
+
+
+class _PromptInteger(pn.widgets.IntSlider):
+    """The same for whole numbers."""
+
+    _priority_changes = ("value",)
+
+
 def _text() -> pn.pane.Str:
     return wrapped_text(width=_WIDTH)
 
@@ -293,6 +312,6 @@ def _widget(one: Slider) -> pn.widgets.Widget:
     name = f"{one.label} [{one.unit}]" if one.unit else one.label
     ends: dict[str, Any] = {"value": one.value, "start": one.low, "end": one.high}
     if one.whole:
-        return pn.widgets.IntSlider(label=name, **ends)
+        return _PromptInteger(label=name, **ends)
     step = (one.high - one.low) / _STEPS
-    return pn.widgets.FloatSlider(label=name, step=step, format="0.[0000]", **ends)
+    return _PromptFloat(label=name, step=step, format="0.[0000]", **ends)

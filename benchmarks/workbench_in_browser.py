@@ -1,0 +1,90 @@
+"""Slider to drawn diagram of the workbench in headless chromium.
+
+    python -m benchmarks.workbench_in_browser [--timed 200]
+
+Two modes in each direction, collocation; `chatter app` runs in a process of its own, and the time
+runs from the new value of the slider in the browser until its diagram is painted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from benchmarks.workbench import two_modes_a_direction
+from tests.chatter.app.browser_tab import browser, tab_of
+
+#: milliseconds from a value of the slider until its diagram is painted
+TIME = """
+new Promise(resolve => {
+  const models = [...Bokeh.documents[0]._all_models.values()];
+  const slider = models.find(one => one.title && String(one.title).startsWith("Ktc"));
+  const limits = models.find(one => one.data && "stable" in one.data);
+  const plot = models.find(one => one.renderers
+    && one.renderers.some(drawn => drawn.data_source === limits));
+  const {repainted} = Bokeh.index.find_one(plot);
+  const change = limits.properties.data.change;
+  const painted = () => {
+    repainted.disconnect(painted);
+    // after what else the frame does
+    setTimeout(() => resolve(performance.now() - begun));
+  };
+  const arrived = () => { change.disconnect(arrived); repainted.connect(painted); };
+  change.connect(arrived);
+  const begun = performance.now();
+  slider.value = VALUE;
+})
+"""
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Address of `chatter app` on a folder."""
+    command = [sys.executable, "-m", "chatter", "app", str(folder), "--no-browser"]
+    serving = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    try:
+        assert serving.stdout is not None
+        yield next(word for line in serving.stdout for word in line.split() if "http://" in word)
+    finally:
+        serving.terminate()
+        serving.wait()
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--timed", type=int, default=200)
+    given = parser.parse_args()
+    folder = Path(tempfile.mkdtemp())
+    (folder / "case.toml").write_text(two_modes_a_direction().to_toml(), encoding="utf-8")
+    (folder / "profile").mkdir()
+    with served(folder) as url, browser(folder / "profile") as port:
+        tab = tab_of(port)
+        tab.open(url)
+        tab.wait_for_text("chatter lobes case.toml")
+        tab.wait(
+            "[...Bokeh.documents[0]._all_models.values()].some(one => one.data"
+            " && 'stable' in one.data && one.data.stable.length)"
+        )
+        walls = [
+            tab.value(TIME.replace("VALUE", json.dumps(600.0 + 5.625 * (number % 40 - 20))))
+            for number in range(given.timed)
+        ]
+        tab.close()
+    shutil.rmtree(folder, ignore_errors=True)
+    print(
+        f"slider to drawn diagram, {given.timed} moves: median {statistics.median(walls):.0f} ms, "
+        f"90 % below {sorted(walls)[int(0.9 * len(walls))]:.0f} ms"
+    )
+
+
+if __name__ == "__main__":
+    main()
