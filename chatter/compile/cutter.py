@@ -78,7 +78,7 @@ def edge_law(case: Case) -> NamedTuple:
 
 
 def process_damping_of(case: Case) -> ProcessDampingLaw | None:
-    """Force on the flank that a case describes; None where there is none.
+    """Force on the flank that a case describes; None where there is none, as of a new tool.
 
     InputError if ploughing lacks the clearance angle, or anything that touches the work.
     """
@@ -93,7 +93,7 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
             f"{case.name}: tool.clearance_angle: is missing; process_damping.indentation_force "
             'needs it, such as "6 deg"'
         )
-    if not tool.edge_radius and not tool.flank_wear:
+    if not tool.edge_radius and "flank_wear" not in tool.model_fields_set:
         problems.append(
             f"{case.name}: tool.edge_radius: neither edge_radius nor flank_wear is given; "
             "process_damping.indentation_force needs one of them"
@@ -106,6 +106,9 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
         )
     if problems:
         raise InputError(problems)
+    if not tool.edge_radius and not tool.flank_wear:
+        # a new tool, where a study of wear begins: no land touches the work
+        return _viscous(case, _NONE_YET)
     return Ploughing(
         indentation_force=section.indentation_force,
         clearance_angle=tool.clearance_angle,

@@ -74,11 +74,20 @@ def _out_of_range(case: Case, row: MaterialRow) -> list[str]:
 def thickest_chip(case: Case) -> float:
     """Thickest chip of the rigid cut at the full radius, m.
 
-    h = f_z sin(phi), largest where the arc of the cut comes nearest to the feed axis, phi = pi/2
-    (Altintas, Manufacturing Automation, 2012, section 2.6).
+    h = f_z sin(kappa) sin(phi), largest where the arc of the cut comes nearest to the feed axis,
+    phi = pi/2 (Altintas, Manufacturing Automation, 2012, section 2.6), with the angle kappa of a
+    straight edge against the plane of the feed; a corner makes it thinner than that.
     """
-    radius = 0.5 * case.tool.diameter
+    tool, depth = case.tool, case.cut.axial_depth
+    edge = tool.cutting_edge_angle - tool.taper_angle
+    tip = 0.5 * tool.diameter
+    thickest = max(_largest_sine(case, radius) for radius in (tip, tip + depth / math.tan(edge)))
+    return case.cut.feed_per_tooth * math.sin(edge) * thickest
+
+
+def _largest_sine(case: Case, radius: float) -> float:
+    """Largest sine of the angle of engagement from +y at a radius of the tool, m."""
     band = case.uncut_band
     lowest, highest = (float(border.at(radius)) / radius for border in (band.lower, band.upper))
     nearest = min(max(0.0, lowest, -1.0), highest, 1.0)
-    return case.cut.feed_per_tooth * math.sqrt(max(0.0, 1.0 - nearest**2))
+    return math.sqrt(max(0.0, 1.0 - nearest**2))

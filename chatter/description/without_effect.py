@@ -37,6 +37,8 @@ def _of_tool(case: Case) -> list[str]:
             _sentence(f"tool.{key}", "without process_damping.indentation_force")
             for key in _given(tool, ("clearance_angle", "edge_radius"))
         ]
+    elif not tool.flank_wear and not tool.edge_radius and "flank_wear" in tool.model_fields_set:
+        found.append(_sentence("process_damping.indentation_force", "while tool.flank_wear is 0"))
     if tool.stick_out is None:
         keys = _given(tool, ("shank_diameter",))
         found += [_sentence(f"tool.{key}", "without tool.stick_out") for key in keys]

@@ -277,7 +277,7 @@ class StabilityCheck(NotebookResult):
 
     def _thickest_chip(self) -> list[list[str]]:
         """Thickest chip of the rigid cut of a straight edge; a corner makes it thinner."""
-        if not cutter_of(self.case).is_cylindrical:
+        if cutter_of(self.case).corner_radius > 0.0:
             return []
         return [["thickest chip", f"{1e3 * thickest_chip(self.case):.3g} mm"]]
 

@@ -104,6 +104,15 @@ def test_wear_lowers_what_is_certain_of_a_limit(tmp_path):
     ) in shown
 
 
+def test_a_depth_that_nothing_bounds_is_not_called_zero():
+    from chatter.studies.whatif.measures import MEASURES, Outcome
+    from chatter.studies.whatif.summary import value_text
+
+    certain = MEASURES["critical depth"].quantities["certain_depth_mm"]
+    told = value_text(certain, Outcome({"certain_depth_mm": 0.0}), "certain_depth_mm")
+    assert told == "not known"
+
+
 def test_probability_says_what_edge_forces_may_take_of_it():
     """It was 82 % of a cut that `check` did not call certain and that chatters in time."""
     values = {"material.Ktc": "1900 +- 100 MPa", "cut.axial_depth": "0.84 mm"}
@@ -193,3 +202,33 @@ def test_the_receptance_of_a_state_of_a_machine_is_computed_once():
 
     structure = milling_model(chatter.load(EXAMPLES / "friction-amplitude" / "case.toml")).structure
     assert structure.receptance()[1] is structure.receptance()[1]
+
+
+def test_a_study_of_wear_begins_with_a_new_tool():
+    """A land of 0 was refused where the flank ploughs: "neither edge_radius nor flank_wear"."""
+    from chatter.compile.cutter import process_damping_of
+
+    ploughing = {"process_damping.indentation_force": "2e14 N/m^3", "tool.clearance_angle": "8 deg"}
+    case = cut().patch(ploughing)
+    with pytest.raises(InputError, match="neither edge_radius nor flank_wear is given"):
+        process_damping_of(case)
+    assert process_damping_of(case.patch({"tool.flank_wear": "0.1 mm"})).flank_wear == 1e-4
+    new = case.patch({"tool.flank_wear": "0 mm"})
+    assert process_damping_of(new) is None
+    assert chatter.check(new).critical_depth == chatter.check(cut()).critical_depth
+    assert any("no effect while tool.flank_wear is 0" in one for one in new.notes)
+
+
+def test_the_chip_of_a_slanting_edge_is_thinner_than_the_feed():
+    """A face mill had no thickest chip, and its material was judged by the feed per tooth."""
+    face = {"tool.kind": "inserted", "tool.helix": "0 deg", "tool.diameter": "80 mm",
+            "tool.cutting_edge_angle": "45 deg", "cut.mode": "face", "cut.radial_depth": None,
+            "cut.workpiece_width": "60 mm", "cut.feed_per_tooth": "0.2 mm",
+            "cut.feed_rate": None, "cut.axial_depth": "2 mm"}  # fmt: skip
+    # centred: f_z sin(45 deg)
+    centred = chatter.check(cut().patch(face))
+    assert ["thickest chip", f"{0.2 * np.sqrt(0.5):.3g} mm"] in centred.rows()
+    aside = face | {"cut.workpiece_width": "10 mm", "cut.tool_offset": "30 mm"}
+    # the work lies from -35 to -25 mm beside the axis: sin(phi) = sqrt(1 - (25/42)^2)
+    chip = 0.2 * np.sqrt(0.5) * np.sqrt(1.0 - (25.0 / 42.0) ** 2)
+    assert ["thickest chip", f"{chip:.3g} mm"] in chatter.check(cut().patch(aside)).rows()

@@ -129,8 +129,8 @@ class PitchResult(SavedResult):
         angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
         before, after = self.original.lowest_limit * 1e3, self.best.lowest_limit * 1e3
         lines = [
-            f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
-            f"{after:.4g} mm, with that of the case {before:.4g} mm",
+            f"pitch {angles} deg: lowest limit at {len(self.speeds)} speeds from {low:.0f} to "
+            f"{high:.0f} rpm {after:.4g} mm, with that of the case {before:.4g} mm",
             f"largest pitch ratio {self.best.max_pitch_ratio:.3g} of the mean",
         ]
         if not self.is_better:

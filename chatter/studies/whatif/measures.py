@@ -55,6 +55,7 @@ class Quantity:
     title: str  # in a sentence; "{speed}" stands for the speed of the cut
     unit: str
     beyond: str = ""  # number that it lies above where it is None
+    at_zero: str = ""  # what is said in the place of 0
 
 
 @dataclass(frozen=True)
@@ -262,9 +263,13 @@ _CERTAIN = Quantity(
     "depth stable for certain at {speed}, whatever linear methods leave out",
     "mm",
     beyond="max_axial_depth_mm",
+    at_zero="not known",
 )
 _CERTAIN_ANYWHERE = Quantity(
-    "depth stable for certain at any of the speeds", "mm", beyond="max_axial_depth_mm"
+    "depth stable for certain at any of the speeds",
+    "mm",
+    beyond="max_axial_depth_mm",
+    at_zero="not known",
 )
 _LOWEST = Quantity("lowest critical depth over speed", "mm", beyond="max_axial_depth_mm")
 _CHATTER_FREQUENCY = Quantity("chatter frequency", "Hz")

@@ -48,6 +48,8 @@ def value_text(quantity: Quantity, outcome: Outcome, key: str) -> str:
     """Value with its unit, or why there is none."""
     value = outcome.numbers.get(key)
     unit = unit_of(quantity, outcome, key)
+    if value == 0.0 and quantity.at_zero:
+        return quantity.at_zero
     if value is not None:
         return f"{value:.4g} {unit}".strip()
     beyond = outcome.numbers.get(quantity.beyond)
@@ -186,6 +188,8 @@ def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[s
     for key, quantity in _changed_quantities(study, before, after).items():
         pair = value_text(quantity, before, key), value_text(quantity, after, key)
         share = change_text(before.numbers.get(key), after.numbers.get(key))
+        if quantity.at_zero in pair:
+            share = ""
         if key == _PEAK_FREQUENCY and _is_another_peak(before, after):
             share = ", which is another peak,"
         found.append(f"{title_of(study, quantity)}: {pair[0]} -> {pair[1]}{share}{why}")
