@@ -28,6 +28,8 @@ def drawn_again(figure: Any) -> Figure:
         if renderer.visible and draw is not None:
             draw(axes, renderer.glyph, renderer.data_source, labels.get(renderer.id))
     axes.set(xlabel=figure.xaxis[0].axis_label or "", ylabel=figure.yaxis[0].axis_label or "")
+    for drawn, axis in ((axes.xaxis, figure.xaxis[0]), (axes.yaxis, figure.yaxis[0])):
+        drawn.set_visible(axis.visible)
     axes.set_title(figure.title.text or "", fontsize=10)
     _limit(axes.set_xlim, figure.x_range)
     _limit(axes.set_ylim, figure.y_range)
@@ -131,6 +133,30 @@ def _cells(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
     axes.figure.colorbar(drawn, ax=axes)
 
 
+def _faces(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
+    """Faces of a surface in the order of the source, coloured by a value."""
+    del label
+    if not len(source.data[_name(glyph.xs)]):
+        return
+    columns = (np.array(source.data[_name(one)], dtype=float) for one in (glyph.xs, glyph.ys))
+    mapper = glyph.fill_color.transform
+    drawn = PolyCollection(
+        np.stack(list(columns), axis=-1), cmap=ListedColormap(mapper.palette),
+        edgecolors=glyph.line_color, linewidths=glyph.line_width,
+    )  # fmt: skip
+    drawn.set_array(_column(source, glyph.fill_color))
+    drawn.set_clim(mapper.low, mapper.high)
+    axes.add_collection(drawn)
+    axes.figure.colorbar(drawn, ax=axes)
+
+
+def _texts(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
+    del label
+    columns = (source.data[_name(one)] for one in (glyph.x, glyph.y, glyph.text))
+    for x, y, text in zip(*columns, strict=True):
+        axes.text(x, y, text, ha="center", va="center", fontsize=8)
+
+
 def _name(given: Any) -> str:
     return given if isinstance(given, str) else given.field
 
@@ -142,5 +168,7 @@ _GLYPHS: dict[str, Callable[..., None]] = {
     "Image": _image,
     "MultiLine": _lines,
     "Quad": _cells,
+    "Patches": _faces,
+    "Text": _texts,
     "VBar": _bars,
 }

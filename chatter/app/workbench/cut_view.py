@@ -20,6 +20,7 @@ from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import downloads, result_panel, same_call
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import save_result
+from chatter.app.workbench.surface_figure import SurfaceFigure
 from chatter.app.workbench.table_files import PageTable, as_html
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
@@ -36,7 +37,6 @@ _COLOURS = ("#0072B2", "#E69F00", "#009E73")
 _MOST_POINTS = 6000
 _FRAMES = 100
 _SOUND_RATE, _SHORTEST_SOUND, _LONGEST_SOUND = 44_100, 2.0, 20.0  # Hz, s, s
-_SURFACE_LINES, _SURFACE_POINTS = 24, 400
 _CARVE = {"simulation.chip": "dexel"}
 
 
@@ -65,8 +65,7 @@ class CutView:
             width=400, show_loop_controls=False,
         )  # fmt: skip
         self.clock = pn.pane.Str("")
-        self.turn = pn.widgets.IntSlider(label="View of the surface [deg]", start=10, end=80,
-                                         value=35, width=260)  # fmt: skip
+        self.surface = SurfaceFigure()
         self.summary = pn.pane.HTML("", width=520)
         self.sound = pn.pane.Audio(None, name="tool velocity as sound")
         self.sound_file = pn.widgets.FileDownload(
@@ -77,7 +76,6 @@ class CutView:
         self.spectrum = ColumnDataSource({name: [] for name in ("f", *_AXES)})
         self.section = ColumnDataSource({"x": [], "y": []})
         self.orbit = ColumnDataSource({"x": [], "y": []})
-        self.surface = ColumnDataSource({"xs": [], "ys": []})
         self.workpiece = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
         self.tool = ColumnDataSource({"x": [], "y": []})
         self._figures = self._make_figures()
@@ -86,11 +84,10 @@ class CutView:
         self.start_button.on_click(lambda _: self.start())
         self.cancel_button.on_click(lambda _: self.computations.cancel())
         self.player.param.watch(lambda _: self.draw_time(), "value")
-        self.turn.param.watch(lambda _: self.draw_surface(), "value")
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
-        force, moved, lines, section, surface, workpiece = (
+        force, moved, lines, section, workpiece = (
             picture(drawn, name) for name, drawn in self._figures.items()
         )
         return pn.Column(
@@ -99,7 +96,7 @@ class CutView:
             self.call,
             pn.Row(self.player, self.clock),
             pn.Row(pn.Column(force, moved, lines), pn.Column(workpiece, section)),
-            pn.Row(pn.Column(surface, self.turn),
+            pn.Row(self.surface.__panel__(),
                    pn.Column(self.summary, self.sound, self.sound_file)),
             self._files,
             self._before,
@@ -160,41 +157,6 @@ class CutView:
             self._figures["force"].x_range.update(start=0.0, end=float(time[-1]))
         self._draw_workpiece(now)
 
-    def draw_surface(self) -> None:
-        """Draw the wall that the cut leaves, seen from the angle that is chosen."""
-        walls = () if self.result is None else self.result.finish.walls
-        drawn = self._figures["surface"]
-        if not walls:
-            self.surface.data = {"xs": [], "ys": []}
-            drawn.title.text = "surface: the run leaves no finished wall"
-            return
-        profiles = walls[0].profiles
-        x = (profiles.x - profiles.x[0]) * 1e3
-        z, up = profiles.height * 1e3, profiles.deviation * 1e6
-        tilt = math.radians(self.turn.value)
-        reach = max(float(np.ptp(x)), 1e-9)
-        depth = max(float(np.ptp(z)), 1e-9)
-        scale = 0.25 * reach / max(float(np.ptp(up)), 1e-9)
-        rows = np.linspace(0, len(z) - 1, min(_SURFACE_LINES, len(z))).round().astype(int)
-        columns = np.linspace(0, len(x) - 1, min(_SURFACE_POINTS, len(x))).round().astype(int)
-        away = (z / depth) * 0.6 * reach if len(z) > 1 else np.zeros(1)
-        flat_x = x[None, :] + away[:, None] * math.cos(tilt)
-        flat_y = away[:, None] * math.sin(tilt) + up * scale
-        lines = [(flat_x[k, columns], flat_y[k, columns]) for k in rows]
-        across = columns[:: max(1, len(columns) // 60)]
-        lines += [(flat_x[rows, k], flat_y[rows, k]) for k in across] if len(rows) > 1 else []
-        self.surface.data = {"xs": [a for a, _ in lines], "ys": [b for _, b in lines]}
-        drawn.title.text = (
-            f"wall {profiles.side}: deviation {up.min():.3g} to {up.max():.3g} um, "
-            f"{reach:.3g} mm along the feed, {depth:.3g} mm high"
-        )
-        both = [np.concatenate([np.ravel(line[k]) for line in lines]) for k in (0, 1)]
-        for ends, values in zip((drawn.x_range, drawn.y_range), both, strict=True):
-            low, high = float(values.min()), float(values.max())
-            ends.update(
-                start=low - 0.05 * (high - low + 1e-9), end=high + 0.1 * (high - low + 1e-9)
-            )
-
     def _report(self, done: int, total: int) -> None:
         value = min(100, round(100.0 * done / total)) if total else 0
         self._show(lambda: self.progress.param.update(value=value, active=True))
@@ -216,7 +178,8 @@ class CutView:
         self.message.object = "\n".join([f"{told['verdict']}: {told['reason']}", *result.notes])
         self._draw_signals(result)
         self._draw_motion(result)
-        self.draw_surface()
+        feed = result.case.cut.feed_per_tooth * result.case.tool.teeth
+        self.surface.show(result.finish.walls, feed)
         self.sound.object, self.sound.sample_rate = sound_of(result), _SOUND_RATE
         self.sound_file.disabled = False
         self.summary.object = as_html(_numbers(told))
@@ -292,7 +255,6 @@ class CutView:
         lines = _figure(620, 230, "frequency [Hz]", "amplitude [um]", y_axis_type="log")
         section = _figure(430, 300, "x [um]", "y [um]", match_aspect=True, x_range=None,
                           y_range=None)  # fmt: skip
-        surface = _figure(760, 380, "along the feed, oblique view [mm]", "deviation, scaled")
         workpiece = _figure(430, 330, "x [mm]", "y [mm]")
         for axis, colour in zip(_AXES, _COLOURS, strict=True):
             force.line("time", f"F{axis}", source=self.signals, color=colour,
@@ -302,8 +264,6 @@ class CutView:
         section.line("x", "y", source=self.orbit, color="#C9D6DF", line_width=0.5)
         section.scatter("x", "y", source=self.section, size=4, color="#D55E00",
                         legend_label="once a revolution")  # fmt: skip
-        surface.multi_line("xs", "ys", source=self.surface, color="#0072B2", line_width=0.6)
-        surface.yaxis.visible = False
         workpiece.image("image", "x", "y", "dw", "dh", source=self.workpiece,
                         palette=["#FFFFFF", "#9FB4C0"])  # fmt: skip
         workpiece.line("x", "y", source=self.tool, color="#D55E00", legend_label="tool")
@@ -311,7 +271,7 @@ class CutView:
         for drawn in (force, motion, lines, section, workpiece):
             legend_above(drawn)
         return {"force": force, "motion": motion, "spectrum": lines, "section": section,
-                "surface": surface, "workpiece": workpiece}  # fmt: skip
+                "workpiece": workpiece}  # fmt: skip
 
 
 def sound_of(result: SimulationResult) -> Any:

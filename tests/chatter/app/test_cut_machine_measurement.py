@@ -44,6 +44,11 @@ def test_a_cut_is_simulated_and_heard(workbench):
     rate, heard = scipy.io.wavfile.read(view._sound_file())
     assert rate == 44_100
     assert len(heard) >= 2 * rate
+    # the wall in micrometres, the last revolutions of it
+    deviation = view.result.finish.walls[0].profiles.deviation * 1e6
+    drawn = np.array(view.surface.faces.data["deviation"])
+    assert deviation.min() <= drawn.min() < drawn.max() <= deviation.max()
+    assert np.ptp(drawn) > 0.2 * np.ptp(deviation[:, len(deviation[0]) // 2 :])
     view.player.value = 50
     assert view._figures["force"].x_range.end == pytest.approx(0.5 * view.result.time[-1])
 
