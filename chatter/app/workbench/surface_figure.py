@@ -39,10 +39,12 @@ class SurfaceFigure:
         #: place of the mouse, pixels, and angles where dragging began
         self._held = (0.0, 0.0, 0, 0)
         self.wall = pn.widgets.Select(label="Wall", options=[], width=90)
-        self.azimuth = pn.widgets.IntSlider(label="Azimuth [deg]", start=_AZIMUTH[0], end=_AZIMUTH[1],
-                                         value=-30, width=230)  # fmt: skip
-        self.elevation = pn.widgets.IntSlider(label="Elevation [deg]", start=_ELEVATION[0], end=_ELEVATION[1],
-                                         value=30, width=230)  # fmt: skip
+        self.azimuth = pn.widgets.IntSlider(
+            label="Azimuth [deg]", start=_AZIMUTH[0], end=_AZIMUTH[1], value=-30, width=230
+        )
+        self.elevation = pn.widgets.IntSlider(
+            label="Elevation [deg]", start=_ELEVATION[0], end=_ELEVATION[1], value=30, width=230
+        )
         self.faces = ColumnDataSource({"xs": [], "ys": [], "deviation": []})
         self.edges = ColumnDataSource({"xs": [], "ys": []})
         self.marks = ColumnDataSource({"x": [], "y": [], "text": []})
