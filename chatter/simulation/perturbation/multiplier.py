@@ -32,6 +32,8 @@ _MOST_PERIODS = 1200
 #: differences above this share of the feed leave the chip, below this one they are rounding
 _LARGEST_DIFFERENCE = 0.1
 _SMALLEST_DIFFERENCE = 1e-7
+#: times of this that rounding reaches at the most
+_ROUNDING = 10.0
 #: periods that a fit needs at the least
 _LEAST_FITTED = 10
 #: moments of a difference, shapes that differences are made of, the weakest of them that counts,
@@ -92,8 +94,11 @@ def simulated_multiplier(case: Case, modes: tuple[Mode, ...]) -> SimulatedMultip
     fitted = _fit_of(watched, feed)
     if fitted is None:
         return _full_chatter(watched, period)
-    difference = np.diff(watched, axis=0)[fitted]
-    found = _fitted(difference, period)
+    differences = np.diff(watched, axis=0)
+    difference = differences[fitted]
+    # none grows of what has died out for good
+    largest = 1.0 if _rests(differences[fitted.stop :], feed) else math.inf
+    found = _fitted(difference, period, largest)
     swing = 0.5 * float(np.ptp(watched[len(watched) // 2 :], axis=(0, 1)).max())
     if found.radius >= 1.0 or swing <= LARGE_SWING * feed:
         return found
@@ -171,7 +176,7 @@ def linear_ramp(steps: int) -> Callable[[NDArray[np.int64]], NDArray[np.float64]
 def _fit_of(periods: NDArray[np.float64], feed: float) -> slice | None:
     """Differences between periods that are small vibration; None where it is full chatter."""
     difference = np.diff(periods, axis=0)
-    size = np.sqrt(np.mean(difference**2, axis=(1, 2)) * 3.0)
+    size = _sizes(difference)
     large = np.flatnonzero(size > _LARGEST_DIFFERENCE * feed)
     gone = np.flatnonzero(size < _SMALLEST_DIFFERENCE * feed)
     first = 0
@@ -189,6 +194,18 @@ def _fit_of(periods: NDArray[np.float64], feed: float) -> slice | None:
     return slice(first + min((end - first) // 3, end - first - _LEAST_FITTED), end)
 
 
+def _sizes(differences: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Size (k,), m, of the differences (k, n, 3) of periods."""
+    return np.sqrt(np.mean(differences**2, axis=(1, 2)) * 3.0)
+
+
+def _rests(later: NDArray[np.float64], feed: float) -> bool:
+    """Whether what follows differences that were fitted is rounding, to the end of the run."""
+    if len(later) < _LEAST_FITTED:
+        return False
+    return bool(np.all(_sizes(later) < _ROUNDING * _SMALLEST_DIFFERENCE * feed))
+
+
 def _dies_out(difference: NDArray[np.float64]) -> bool:
     """Whether the differences (k, n, 3) of periods do die out as they are followed."""
     if len(difference) == 0:
@@ -197,17 +214,25 @@ def _dies_out(difference: NDArray[np.float64]) -> bool:
     return bool(last < _DIED_OUT * first)
 
 
-def _fitted(difference: NDArray[np.float64], period: float) -> SimulatedMultiplier:
-    """Dominant multiplier from differences (k, n, 3) of periods; 0 where there are none."""
+def _fitted(
+    difference: NDArray[np.float64], period: float, largest: float = math.inf
+) -> SimulatedMultiplier:
+    """Dominant multiplier from differences (k, n, 3) of periods; 0 where there are none.
+
+    Below `largest` in magnitude, see `_dominant`.
+    """
     if len(difference) == 0:
         return SimulatedMultiplier(0j, period, math.nan, "hopf")
-    multiplier = _dominant(difference)
+    multiplier = _dominant(difference, largest)
     kind = bifurcation_of_multiplier(multiplier)
     return SimulatedMultiplier(multiplier, period, _frequency(difference, multiplier, period), kind)
 
 
-def _dominant(differences: NDArray[np.float64]) -> complex:
+def _dominant(differences: NDArray[np.float64], largest: float = math.inf) -> complex:
     """Largest multiplier that takes the differences (k, n, 3) of periods from each to the next.
+
+    Those of `largest` or more are none of the cut: where few differences die out within a few
+    periods, as in resonance with the teeth, shapes that are hardly there give any multiplier.
 
     Dynamic mode decomposition (Schmid 2010, J. Fluid Mech. 656): the map from row to row is
     fitted within the few shapes that the rows are made of; several multipliers of nearly the same
@@ -224,7 +249,10 @@ def _dominant(differences: NDArray[np.float64]) -> complex:
     step = (left.T @ after @ right.T) / size[:, None]
     values, shapes = np.linalg.eig(step.T)
     share = np.abs(np.linalg.solve(shapes, (after[-1] @ right.T).astype(complex)))
-    present = share > _LEAST_SHARE * share.max()
+    present = (share > _LEAST_SHARE * share.max()) & (np.abs(values) < largest)
+    if not present.any():
+        size_of = np.linalg.norm(samples, axis=1)
+        return complex((size_of[-1] / size_of[0]) ** (1.0 / (len(size_of) - 1)))
     return complex(values[present][np.argmax(np.abs(values[present]))])
 
 
