@@ -32,6 +32,8 @@ def sheet(
     folder = options.output_folder(out, cases[0].stem if len(cases) == 1 else "sheet")
     with progress_bar("limits and pockets") as progress:
         found = sheet_of(described, progress)
+    for case in described:
+        options.print_coefficients(case)
     present(found, folder, json=json, words=_print_sheet)
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram, StabilityMap
 
 _FILL_ROWS, _FILL_COLUMNS = 1000, 1000
+#: values that a map of the spectral radius is drawn with, at the least
+_MAP_ROWS, _MAP_COLUMNS = 300, 400
 #: beside 0 stable, 1 chatter
 _NOT_SEARCHED = 2
 _FILLS = (style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL)
@@ -340,6 +342,22 @@ def _name_sides(axes: Axes) -> None:
     )
 
 
+def _finer_map(x: Array, y: Array, radius: Array) -> tuple[Array, Array, Array]:
+    """Axes and spectral radius (y, x) with values between those computed, as the boundary has them.
+
+    Colours of few values are blocks beside a smooth boundary. Where a value is missing, all stay
+    as they are: nothing is known between it and its neighbours.
+    """
+    if np.ma.count_masked(radius) or min(x.size, y.size) < 2:
+        return x, y, radius
+    across = np.linspace(x[0], x[-1], max(x.size, _MAP_COLUMNS))
+    up = np.linspace(y[0], y[-1], max(y.size, _MAP_ROWS))
+    growth_rate = np.log(np.maximum(np.ma.getdata(radius), 1e-300))
+    rows = np.array([np.interp(across, x, row) for row in growth_rate])
+    columns = np.array([np.interp(up, y, column) for column in rows.T])
+    return across, up, np.exp(columns.T)
+
+
 def plot_map(diagram: StabilityMap) -> Figure:
     """Draw the spectral radius over two axes, with the boundary of stability."""
     figure = style.new_figure(8.0, 5.6)
@@ -349,9 +367,7 @@ def plot_map(diagram: StabilityMap) -> Figure:
     lowest = min(float(radius.min()), 0.99)
     highest = min(max(float(radius.max()), 1.01), _HIGHEST_RADIUS)
     mesh = axes.pcolormesh(
-        x,
-        y,
-        radius,
+        *_finer_map(x, y, radius),
         cmap=_RADIUS_COLOURS,
         norm=TwoSlopeNorm(1.0, lowest, highest),
         shading="nearest",

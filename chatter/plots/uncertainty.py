@@ -50,7 +50,8 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
     label = f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})"
     if found.for_certain_in_words():
         label += f", for certain {found.least_probability:.1%}"
-    style.mark_cut(axes, cut, label, color=style.RED if found.probability < 0.5 else style.GREEN)
+    colour = style.GREEN if found.least_probability >= 0.5 else style.ORANGE
+    style.mark_cut(axes, cut, label, color=style.RED if found.probability < 0.5 else colour)
     axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, _highest_depth(found, high, top)))
     axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.5, frameon=False)

@@ -170,6 +170,26 @@ def test_a_reason_below_a_picture_does_not_make_it_wider():
     assert max(map(len, _pocket_list(diagram).splitlines())) <= _LINE_LENGTH
 
 
+def test_colours_of_a_map_change_where_its_boundary_is():
+    """Blocks of 40 x 10 values stood beside the smooth curve of |mu| = 1."""
+    from chatter.plots.stability_diagram import _finer_map
+
+    x, y = np.array([0.0, 1.0]), np.array([0.0, 2.0, 4.0])
+    radius = np.ma.masked_invalid([[0.5, 0.5], [2.0, 0.5], [2.0, 8.0]])
+    across, up, drawn = _finer_map(x, y, radius)
+    assert drawn.shape == (up.size, across.size)
+    # along x = 0 the logarithm goes evenly from that of 1/2 to that of 2: 1 half way, at y = 1
+    assert np.interp(1.0, up, drawn[:, 0]) == pytest.approx(1.0, rel=1e-3)
+    assert drawn[-1, -1] == pytest.approx(8.0)
+    missing = np.ma.masked_invalid([[0.5, 0.5], [2.0, np.nan], [2.0, 8.0]])
+    assert _finer_map(x, y, missing)[2] is missing
+
+
+def test_a_sheet_says_which_coefficients_it_has(tmp_path):
+    shown = chatter_command("sheet", written(tmp_path), "--out", tmp_path / "out").stderr
+    assert "coefficients: linear law, Ktc 1900 MPa, Krc 700 MPa" in shown
+
+
 def test_no_length_is_written_with_an_exponent():
     """ "displacement 1.21e+03 um peak"."""
     notes = chatter.check(cut(cut__feed_per_tooth="2.5 mm", material__Kte="900 N/mm")).notes
