@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,9 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
+from chatter.description.units import NUMBER
 from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
@@ -104,7 +108,15 @@ def frf(options: FrfOptions) -> None:
 
 def _ends(band: str) -> list[str]:
     """Ends of a band, FROM..TO or separated by a comma."""
-    return [part.strip() for part in band.split(".." if ".." in band else ",")]
+    ends = [part.strip() for part in band.split(".." if ".." in band else ",")]
+    unit = re.sub(rf"^{NUMBER}\s*", "", ends[-1])
+    if not unit:
+        raise InputError(
+            f"--band {formatted(band)} has no unit; a band is written as in "
+            f'"{ends[0]} Hz..{ends[-1]} Hz"'
+        )
+    # "10..200 Hz" is meant as 10 Hz..200 Hz
+    return [f"{end} {unit}" if re.fullmatch(NUMBER, end) else end for end in ends]
 
 
 def _print_peaks(result: FrfResult) -> None:

@@ -99,7 +99,7 @@ def _print_summary(result: SimulationResult) -> None:
         f"displacement {to_digits(summary['peak_displacement_um'], 3)} um peak"
     )
     _print_transient(summary)
-    for line in _surface(summary, math.degrees(result.setup.cutter.edge_angle)):
+    for line in _surface(summary, _edge_angle(result)):
         print_line(line)
     frequency = summary["chatter_frequency_Hz"]
     at = "" if frequency is None else f" at {frequency:.1f} Hz"
@@ -125,6 +125,18 @@ def _speed_in_cut(case: Case) -> str:
         return ""
     there = 30.0 * wide * case.cut.spindle_speed
     return f" on the diameter, {there:.4g} m/min on the {1e3 * wide:.4g} mm that cut"
+
+
+def _edge_angle(result: SimulationResult) -> float:
+    """Angle of the edge against the plane of the feed at the depth of the cut, deg.
+
+    On a ball or a corner that is deeper than the cut it is that of the arc there.
+    """
+    cutter, depth = result.setup.cutter, result.case.cut.axial_depth
+    corner = cutter.corner_radius
+    if depth < corner * (1.0 - math.cos(cutter.edge_angle)):
+        return math.degrees(math.acos(1.0 - depth / corner))
+    return math.degrees(cutter.edge_angle)
 
 
 def _surface(summary: dict, edge_angle: float) -> list[str]:

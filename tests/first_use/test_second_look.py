@@ -190,6 +190,27 @@ def test_a_sheet_says_which_coefficients_it_has(tmp_path):
     assert "coefficients: linear law, Ktc 1900 MPa, Krc 700 MPa" in shown
 
 
+def test_what_a_ball_leaves_beside_it_is_a_shoulder(tmp_path):
+    """It was called the wall, of which the next pass leaves nothing."""
+    ball = ("--set", "tool.kind=ball", "--set", "cut.radial_depth=none",
+            "--set", 'cut.stepover="0.4 mm"', "--set", "structure=none")  # fmt: skip
+    shown = chatter_command("simulate", written(tmp_path), *ball, "--out", tmp_path / "o").stdout
+    # acos(1 - 0.5/8) = 20.36 deg
+    assert "shoulder at 20.4 deg: surface location error" in shown
+    assert "wall" not in shown
+    assert shown.index("floor: ") < shown.index("shoulder")
+
+
+def test_a_band_without_a_unit_is_answered_in_words_of_the_option():
+    """It was "test of the command line: band: "10" has no unit", such as 922 Hz."""
+    told = chatter_command("frf", MACHINE, "--band", "10..200").stderr
+    assert '--band "10..200" has no unit; a band is written as in "10 Hz..200 Hz"' in told
+    from chatter.cli.frf import _ends
+
+    assert _ends("10..200 Hz") == ["10 Hz", "200 Hz"]
+    assert _ends("5 Hz, 0.5 kHz") == ["5 Hz", "0.5 kHz"]
+
+
 def test_no_length_is_written_with_an_exponent():
     """ "displacement 1.21e+03 um peak"."""
     notes = chatter.check(cut(cut__feed_per_tooth="2.5 mm", material__Kte="900 N/mm")).notes
