@@ -11,9 +11,6 @@ from chatter.operator_sheet.variation import Variation
 from chatter.stability.diagram import StabilityDiagram
 from chatter.stability.neglected_effects import CHATTER, NOT_CERTAIN, STABLE
 
-#: pockets on a sheet
-_MOST_POCKETS = 3
-
 
 class SheetCut(NamedTuple):
     """One line of the sheet, in the units of the shop."""
@@ -65,7 +62,7 @@ def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:
             pocket.critical_depth,
             STABLE,
         )
-        for place, pocket in enumerate(diagram.pockets[:_MOST_POCKETS], start=1)
+        for place, pocket in enumerate(diagram.pockets, start=1)
     ]
     return (stated, *pockets, *_at_any_speed(diagram))
 

@@ -18,6 +18,7 @@ from chatter.app.workbench.form_fields import (
     typed,
     written,
 )
+from chatter.app.workbench.result_panel import CODE
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
@@ -52,6 +53,7 @@ class CaseView:
         )  # fmt: skip
         self.message = wrapped_text(width=560, styles=_ERROR)
         self.done = pn.pane.Str("", width=560)
+        self.call = wrapped_text(width=560, styles=CODE)
         self.save_button = pn.widgets.Button(label="Save", color="primary", width=110)
         self.save_name = pn.widgets.TextInput(label="Save as", placeholder="case-2.toml", width=200)
         self.section = pn.widgets.Select(label="Add a section", options=[], width=200)
@@ -75,7 +77,7 @@ class CaseView:
                     pn.Row(self.section, self.add_button),
                     self._form,
                 ),
-                pn.Column(self.message, self.text),
+                pn.Column(self.message, self.text, self.call),
             ),
         )
 
@@ -88,6 +90,8 @@ class CaseView:
             if content is not None:
                 self._fill(content)
             self._show_problems()
+            name = self._session.name
+            self.call.object = f"chatter check {name}\nchatter.load({name!r})" if name else ""
         finally:
             self._following = False
 

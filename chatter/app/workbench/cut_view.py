@@ -17,12 +17,13 @@ from bokeh.plotting import figure
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import legend_above, picture
-from chatter.app.workbench.result_panel import downloads, result_panel, same_call
+from chatter.app.workbench.result_panel import downloads, result_panel, same_call, table_buttons
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import save_result
 from chatter.app.workbench.surface_figure import SurfaceFigure
 from chatter.app.workbench.table_files import PageTable, as_html
 from chatter.app.workbench.wrapped_text import wrapped_text
+from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.plots.simulation import moving_plane, once_a_revolution, spectrum
@@ -67,6 +68,7 @@ class CutView:
         self.clock = pn.pane.Str("")
         self.surface = SurfaceFigure()
         self.summary = pn.pane.HTML("", width=520)
+        self.tables = table_buttons(self.numbers, "cut")
         self.sound = pn.pane.Audio(None, name="tool velocity as sound")
         self.sound_file = pn.widgets.FileDownload(
             callback=self._sound_file, filename="cut.wav", label="Sound (WAV)", disabled=True
@@ -83,6 +85,7 @@ class CutView:
         self.computations = Computations(self._show_message)
         self.start_button.on_click(lambda _: self.start())
         self.cancel_button.on_click(lambda _: self.computations.cancel())
+        self.carve.param.watch(lambda _: self._show_call(), "value")
         self.player.param.watch(lambda _: self.draw_time(), "value")
 
     def __panel__(self) -> pn.viewable.Viewable:
@@ -97,7 +100,7 @@ class CutView:
             pn.Row(self.player, self.clock),
             pn.Row(pn.Column(force, moved, lines), pn.Column(workpiece, section)),
             pn.Row(self.surface.__panel__(),
-                   pn.Column(self.summary, self.sound, self.sound_file)),
+                   pn.Column(self.summary, pn.Row(*self.tables), self.sound, self.sound_file)),
             self._files,
             self._before,
         )  # fmt: skip
@@ -109,6 +112,7 @@ class CutView:
         if stands == self._shown or not session.name:
             return
         self._shown = stands
+        self._show_call()
         if self.result is None:
             self._before.objects = result_panel(session.results("simulate"))
 
@@ -120,9 +124,7 @@ class CutView:
         except InputError as error:
             self._show_message(str(error))
             return
-        changes = _CARVE if self.carve.value and case.get("simulation") is None else {}
-        if self.carve.value and not changes:
-            changes = {} if case.simulation.chip in ("dexel", "voxel") else _CARVE
+        changes = self._changes(case)
         call, folder = self._call(changes), self._session.results("simulate")
         self.call.objects = [same_call(call)]
 
@@ -143,6 +145,21 @@ class CutView:
         self.message.object = "simulating ..."
         self.computations.start(Computation(compute, False))
 
+    def _changes(self, case: Case) -> dict[str, str]:
+        """What carving the workpiece changes in a case."""
+        given = case.simulation
+        carved = given is not None and given.chip in ("dexel", "voxel")
+        return _CARVE if self.carve.value and not carved else {}
+
+    def _show_call(self) -> None:
+        """Show what gives the same, before it is asked for."""
+        try:
+            changes = self._changes(self._session.sound_case())
+        except InputError:
+            self.call.objects = []
+            return
+        self.call.objects = [same_call(self._call(changes))]
+
     def draw_time(self) -> None:
         """Show the cut at the time that is chosen: the window of the signals, the workpiece."""
         if self.result is None:
@@ -156,6 +173,10 @@ class CutView:
         else:
             self._figures["force"].x_range.update(start=0.0, end=float(time[-1]))
         self._draw_workpiece(now)
+
+    def numbers(self) -> PageTable:
+        """Return the numbers of the cut that is shown."""
+        return _numbers(None if self.result is None else self.result.summary())
 
     def _report(self, done: int, total: int) -> None:
         value = min(100, round(100.0 * done / total)) if total else 0
@@ -182,7 +203,7 @@ class CutView:
         self.surface.show(result.finish.walls, feed)
         self.sound.object, self.sound.sample_rate = sound_of(result), _SOUND_RATE
         self.sound_file.disabled = False
-        self.summary.object = as_html(_numbers(told))
+        self.summary.object = as_html(self.numbers())
         self._files.objects = downloads(folder)
         self.player.value = _FRAMES
         self.draw_time()
@@ -311,7 +332,9 @@ def _kept(size: Any) -> Any:
     return np.unique(np.array(ends).ravel())
 
 
-def _numbers(told: dict[str, Any]) -> PageTable:
+def _numbers(told: dict[str, Any] | None) -> PageTable:
+    if told is None:
+        return PageTable(("cut", "value"), [])
     location = told.get("surface_location_error_um")
     rows = [
         ("verdict", told["verdict"]),

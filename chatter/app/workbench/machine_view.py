@@ -58,6 +58,8 @@ class MachineView:
         self.move_button.on_click(lambda _: self.start("move"))
         self.shapes_button.on_click(lambda _: self.start("mode_shapes"))
         self.file.param.watch(lambda _: self._opened(), "value")
+        for chosen in (self.tests, self.move):
+            chosen.param.watch(lambda _: self._show_calls(), "value")
         for widget in (self.mode, self.player):
             widget.param.watch(lambda _: self.draw(), "value")
         self.refresh()
@@ -144,6 +146,16 @@ class MachineView:
         self.move.value = next(iter(machine.move), None)
         for name in ("mode_shapes", "move", "frf"):
             self._done(name)
+        self._show_calls()
+
+    def _show_calls(self) -> None:
+        """Show what gives the same as each button."""
+        if self.file.value is None:
+            return
+        offered = {"frf": list(self.tests.value), "mode_shapes": []}
+        if self.move.value is not None:
+            offered["move"] = [self.move.value]
+        self.call.objects = [same_call(self._call(name, one)) for name, one in offered.items()]
 
     def _done(self, name: str) -> None:
         folder = self._folder(name)

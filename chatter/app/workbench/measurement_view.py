@@ -72,6 +72,7 @@ class MeasurementView:
         self.accept_button.on_click(lambda _: self.accept())
         self.write_button.on_click(lambda _: self.write())
         self.folder.param.watch(lambda _: self._show(), "value")
+        self.case.param.watch(lambda _: self._show_calls(), "value")
         self.refresh()
 
     def __panel__(self) -> pn.viewable.Viewable:
@@ -184,9 +185,17 @@ class MeasurementView:
         for name in ("explain", "compare"):
             parts += result_panel(self._results(name))
         self._result.objects = parts
+        self._show_calls()
         done = [self._results(name) for name in ("explain", "compare")]
         self.residuals.show(max(done, key=_last_written))
         self.accept_button.disabled = not (self._results("explain") / _UPDATED).is_file()
+
+    def _show_calls(self) -> None:
+        """Show what gives the same as each button."""
+        own = self.case.value == _OPEN_CASE
+        if self.folder.value is not None:
+            both = (self._call(name, own) for name in ("compare", "explain"))
+            self.call.objects = [same_call(one) for one in both]
 
     def _assigned(self) -> None:
         """Write the assignment of the channels into the text."""

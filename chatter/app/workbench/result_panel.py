@@ -10,7 +10,7 @@ from typing import Any
 import panel as pn
 
 from chatter.app.workbench.session import CALL, read_call
-from chatter.app.workbench.table_files import as_html, as_xlsx, table_of
+from chatter.app.workbench.table_files import PageTable, as_csv, as_html, as_xlsx, table_of
 from chatter.app.workbench.wrapped_text import wrapped_text
 
 _TABLES = 6
@@ -58,6 +58,20 @@ def downloads(folder: Path) -> list[pn.widgets.FileDownload]:
         if path.suffix == ".csv" and not (folder / f"{path.stem}.xlsx").exists()
     ]
     return found
+
+
+def table_buttons(
+    table: Callable[[], PageTable], name: str
+) -> tuple[pn.widgets.FileDownload, pn.widgets.FileDownload]:
+    """Buttons that save a table of the page, as CSV and as XLSX."""
+    return (
+        pn.widgets.FileDownload(
+            callback=lambda: as_csv(table()), filename=f"{name}.csv", label="Table (CSV)"
+        ),
+        pn.widgets.FileDownload(
+            callback=lambda: as_xlsx(table()), filename=f"{name}.xlsx", label="Table (XLSX)"
+        ),
+    )
 
 
 def _workbook(path: Path) -> Callable[[], Any]:

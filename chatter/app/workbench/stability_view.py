@@ -13,8 +13,8 @@ from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import legend_above, picture
-from chatter.app.workbench.result_panel import CODE
-from chatter.app.workbench.table_files import PageTable, as_csv, as_xlsx
+from chatter.app.workbench.result_panel import CODE, table_buttons
+from chatter.app.workbench.table_files import PageTable
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import Case
 from chatter.description.progress import Progress
@@ -67,12 +67,7 @@ class StabilityView:
         self.message, self.verdict = _text(), _text()
         self.same_call = wrapped_text(width=_WIDTH, styles=CODE)
         self.cancel = pn.widgets.Button(label="Cancel")
-        self.table = pn.widgets.FileDownload(
-            callback=lambda: as_csv(self.limits()), filename="lobes.csv", label="Table (CSV)"
-        )
-        self.workbook = pn.widgets.FileDownload(
-            callback=lambda: as_xlsx(self.limits()), filename="lobes.xlsx", label="Table (XLSX)"
-        )
+        self.table, self.workbook = table_buttons(self.limits, "lobes")
         self.reset = pn.widgets.Button(label="Reset")
         self.computations = Computations(lambda text: self._later(self.message, text))
         self.cancel.on_click(lambda _: self.computations.cancel())

@@ -16,7 +16,7 @@ from bokeh.plotting import figure
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import picture
-from chatter.app.workbench.result_panel import CODE, downloads
+from chatter.app.workbench.result_panel import CODE, downloads, table_buttons
 from chatter.app.workbench.session import Session, readable_extensions
 from chatter.app.workbench.table_files import PageTable, as_html
 from chatter.app.workbench.upload import dropper
@@ -72,6 +72,9 @@ class TapTestView:
         self.message = wrapped_text()
         self.same_call = pn.pane.Str("", width=900, styles=CODE)
         self.modes = pn.pane.HTML("", width=700)
+        self.tables = table_buttons(self.mode_table, "modes")
+        for button in self.tables:
+            button.disabled = True
         self._files = pn.FlexBox(min_width=860)
         self.measured = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
         self.fitted = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
@@ -102,6 +105,7 @@ class TapTestView:
                     picture(stabilisation, "stabilisation"),
                     pn.Row(self.picked, self.automatic),
                     self.modes,
+                    pn.Row(*self.tables),
                     self.into_case,
                     pn.pane.Markdown("**Records** (a tick: the record is used)"),
                     self._record_list,
@@ -140,6 +144,14 @@ class TapTestView:
         self.message.object = "fitting modes ..."
         arguments = self._arguments()
         self.computations.start(Computation(lambda go_on: self._fit(arguments, go_on), True))
+
+    def mode_table(self) -> PageTable:
+        """Return the modes that were fitted."""
+        found = () if self.test is None else self.test.fit.identified
+        return PageTable(_HEADINGS, [
+            (mode.frequency, mode.damping, mode.mass, f"{mode.fit_error:.1%}", mode.warning)
+            for mode in found
+        ])  # fmt: skip
 
     def pick(self, indices: list[int]) -> None:
         """Pick poles of the stabilisation diagram by their place in it, as a click does."""
@@ -258,11 +270,9 @@ class TapTestView:
         self._draw_functions(test)
         self._draw_diagram(test)
         self._list_records(test)
-        rows = [
-            (mode.frequency, mode.damping, mode.mass, f"{mode.fit_error:.1%}", mode.warning)
-            for mode in test.fit.identified
-        ]
-        self.modes.object = as_html(PageTable(_HEADINGS, rows))
+        self.modes.object = as_html(self.mode_table())
+        for button in self.tables:
+            button.disabled = False
         self.into_case.disabled = not test.fit.modes
         self._files.objects = downloads(folder)
         self.same_call.object = self._same_call(arguments)
