@@ -1,7 +1,7 @@
 """Dotted paths into a case: "cut.axial_depth", "structure.mode[0].damping", "structure.mode[*]"."""
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
@@ -23,8 +23,15 @@ def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tupl
 
     What it leads into is for the message of an InputError if it is not a path.
     """
-    if not isinstance(text, str):
+    found = _split(text) if isinstance(text, str) else None
+    if found is None:
         raise InputError(f"{formatted(text)} is not a path into {into}")
+    return found
+
+
+@lru_cache(4096)
+def _split(text: str) -> tuple[Step, ...] | None:
+    """Steps of a path, which a search asks for again and again; None of what is none."""
     steps: list[Step] = []
     position = 0
     while position < len(text):
@@ -36,7 +43,7 @@ def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tupl
         steps.append(key if key else "*" if at == "*" else int(at))
         position = match.end()
     if not steps or position < len(text) or not isinstance(steps[0], str):
-        raise InputError(f"{formatted(text)} is not a path into {into}")
+        return None
     return tuple(steps)
 
 

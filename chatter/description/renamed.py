@@ -73,6 +73,8 @@ def rename_patch(
     steps: tuple[Step, ...], value: Any, renamed: Sequence[Renamed]
 ) -> tuple[tuple[Step, ...], Any, list[str]]:
     """Path and value of a patch with new names, and the notes of `rename`."""
+    if all(one.where[0] != steps[0] for one in renamed):
+        return steps, value, []
     nested = value
     for step in reversed(steps):
         nested = {step: nested}

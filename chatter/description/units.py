@@ -337,6 +337,12 @@ def parse(given: Any, dimension: str) -> Quantity:
         raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")
     if not isinstance(given, str):
         return Quantity(_finite(_as_float(given), given), 0.0, "")
+    return _parsed(given, dimension)
+
+
+@lru_cache(maxsize=4096)
+def _parsed(given: str, dimension: str) -> Quantity:
+    """Read a quantity from text; a case that is patched is read again and again."""
     match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
     if match is None:
         raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")

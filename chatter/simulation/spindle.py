@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ from chatter.description.case import Case
 from chatter.engine.cut import PrescribedPath, PrescribedSpindle
 
 _REVOLUTION = 2.0 * math.pi
+#: speeds whose times are kept: those of the runs of a measurement
+_KEPT = 32
 #: bin of the spindle, fraction of it, and bins from each to the next
 Bins = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
 
@@ -185,6 +188,11 @@ def prescribed_path(
 
 def path_of_last_revolution(spindle: Spindle, path: ToolPath, bins: int) -> NDArray[np.float64]:
     """Place (2, bins + 1) of the tool axis at every bin of the revolution before the start."""
+    return path.position_at(_revolution_before(float(spindle.speed_at(np.zeros(1))[0]), bins))
+
+
+@lru_cache(_KEPT)
+def _revolution_before(speed: float, bins: int) -> NDArray[np.float64]:
+    """Times (bins + 1,), s, of the bins of the revolution before the start, at a speed in rad/s."""
     behind = np.arange(bins, -1, -1)
-    time = -behind * _REVOLUTION / bins / float(spindle.speed_at(np.zeros(1))[0])
-    return path.position_at(time)
+    return -behind * _REVOLUTION / bins / speed

@@ -1,6 +1,7 @@
 """Set up the delayed chip: which teeth passed before, and where the tool was at that time."""
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -8,10 +9,12 @@ from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.tool.cutter import GAUSS_POINT, EdgeSlices
-from cutting.tool.edge_table import edge_table
+from cutting.tool.edge_table import EdgeTable, edge_table
 from cutting.tool.tooth_passes import earlier_passes
 
 _TURN = 2.0 * math.pi
+#: tools whose passes are kept: the runs of a measurement, once with each of two tools
+_KEPT = 32
 
 
 def delayed_cut(
@@ -42,7 +45,41 @@ def delayed_cut(
     -------
     DelayedCut
     """
-    edges = edge_table(slices, bins)
+    passes = _passes(slices, bins)
+    entry, leave = (angle * bins / _TURN for angle in arc)
+    cutting = np.isfinite(entry[:, 0])
+    return DelayedCut(
+        edges=passes.edges,
+        law=law,
+        flank=flank,
+        entry=_middle(entry, cutting),
+        exit=_middle(leave, cutting),
+        entry_rise=_rise(entry, cutting),
+        exit_rise=_rise(leave, cutting),
+        arc=np.array([entry.min(), leave.max()]),
+        reach=passes.reach,
+        helices=passes.delay.shape[1],
+        earlier=passes.earlier,
+        delay=passes.delay,
+        radial_offset=passes.radial_offset,
+        history=motion_before(path),
+        since=np.zeros((len(slices.angle), 3)),
+    )
+
+
+class _Passes(NamedTuple):
+    """What the edges of a tool find of each other, whatever they cut."""
+
+    edges: EdgeTable
+    reach: NDArray[np.float64]
+    earlier: NDArray[np.int64]
+    delay: NDArray[np.float64]  # bins, of one piece where it is the same at all
+    radial_offset: NDArray[np.float64]
+
+
+@lru_cache(_KEPT)
+def _passes(slices: EdgeSlices, bins: int) -> _Passes:
+    """Passes of the teeth; slices are the same object where a tool is set up again."""
     earlier, ahead = earlier_passes(slices.angle)
     delay = ahead * bins / _TURN
     near = np.round(delay)
@@ -52,24 +89,12 @@ def delayed_cut(
     rise = 0.5 * GAUSS_POINT * slices.offset_rise
     offset = np.stack([slices.normal_offset + rise, slices.normal_offset - rise], axis=-1)
     pieces = np.arange(offset.shape[1])[None, :, None]
-    entry, leave = (angle * bins / _TURN for angle in arc)
-    cutting = np.isfinite(entry[:, 0])
-    return DelayedCut(
-        edges=edges,
-        law=law,
-        flank=flank,
-        entry=_middle(entry, cutting),
-        exit=_middle(leave, cutting),
-        entry_rise=_rise(entry, cutting),
-        exit_rise=_rise(leave, cutting),
-        arc=np.array([entry.min(), leave.max()]),
+    return _Passes(
+        edges=edge_table(slices, bins),
         reach=_reach(slices, bins),
-        helices=1 if alike else offset.shape[1],
         earlier=earlier,
         delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
         radial_offset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
-        history=motion_before(path),
-        since=np.zeros((len(offset), 3)),
     )
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,8 @@ GAUSS_POINT = 1.0 / math.sqrt(3.0)
 _SLICES_A_WAVE = 16
 #: heights within this share of the depth are one
 _SAME_HEIGHT = 1e-9
+#: tools that are kept cut into slices: the runs of a measurement, once with each of two tools
+_KEPT = 32
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ class Cutter:
         return np.asarray(given, dtype=np.float64) if given else np.zeros(self.teeth)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EdgeSlices:
     """Edges of a tool cut into L slices along the axis, for N teeth."""
 
@@ -226,6 +229,13 @@ def slices_between(cutter: Cutter, bounds: NDArray[np.float64]) -> EdgeSlices:
     -------
     EdgeSlices
     """
+    return _slices_between(cutter, tuple(bounds.tolist()))
+
+
+@lru_cache(_KEPT)
+def _slices_between(cutter: Cutter, heights: tuple[float, ...]) -> EdgeSlices:
+    """Slices of a tool that is often set up again with another force law or structure."""
+    bounds = np.array(heights)
     top = corner_height(cutter)
     near = _SAME_HEIGHT * bounds[-1]
     parts: list[Part] = []
