@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.brief_repr import BriefRepr
 from chatter.detection.bifurcation_type import bifurcation_of
 from chatter.detection.chatter_frequency import strongest_line
 from chatter.detection.cut_record import CutRecord
@@ -49,8 +50,8 @@ _PART_OF_MEAN = 0.3
 _NO_CHANGE = 5e-4
 
 
-@dataclass(frozen=True, eq=False)
-class Detection:
+@dataclass(frozen=True, eq=False, repr=False)
+class Detection(BriefRepr):
     """Result of chatter detection.
 
     Attributes

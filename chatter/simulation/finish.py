@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from chatter.description.brief_repr import BriefRepr
 from chatter.simulation.carved_workpiece import carved_walls
 from chatter.simulation.reconstruction import FloorProfile, WallProfiles, surface_profiles
 from cutting.chip.discrete_chip import DiscreteCut
@@ -53,8 +54,8 @@ class FloorFinish:
     texture: Texture
 
 
-@dataclass(frozen=True, eq=False)
-class Finish:
+@dataclass(frozen=True, eq=False, repr=False)
+class Finish(BriefRepr):
     """Surface of a cut."""
 
     walls: tuple[WallFinish, ...] = ()  # one for each side; empty where the run is too short

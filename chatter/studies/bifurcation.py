@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
@@ -43,8 +44,8 @@ _REVOLUTIONS = 200.0
 _KEPT_REVOLUTIONS = 60
 
 
-@dataclass(frozen=True)
-class BifurcationPoint:
+@dataclass(frozen=True, repr=False)
+class BifurcationPoint(BriefRepr):
     """One cut of the diagram."""
 
     value: float  # of the path that varies, SI

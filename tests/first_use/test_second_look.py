@@ -273,3 +273,23 @@ def test_the_chip_of_a_slanting_edge_is_thinner_than_the_feed():
     # the work lies from -35 to -25 mm beside the axis: sin(phi) = sqrt(1 - (25/42)^2)
     chip = 0.2 * np.sqrt(0.5) * np.sqrt(1.0 - (25.0 / 42.0) ** 2)
     assert ["thickest chip", f"{chip:.3g} mm"] in chatter.check(cut().patch(aside)).rows()
+
+
+def test_parts_of_results_have_short_reprs():
+    """The points of a bifurcation diagram filled the screen with their sections."""
+    from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
+    from dynamics.frf.container import Frf
+
+    case = cut(cut__axial_depth="0.3 mm", simulation__revolutions=12)
+    point = chatter.bifurcation(case, "cut.axial_depth", ["0.3 mm"]).points[0]
+    assert f"poincare_section=<array {len(point.poincare_section)} x 3>" in repr(point)
+    assert "value=0.0003" in repr(point)
+    result = chatter.simulate(case)
+    zero_order = chatter.lobes(case).zero_order
+    for part in (point, result.detection, result.finish, zero_order):
+        assert len(repr(part)) < 700, type(part)
+    lines = np.linspace(5.0, 500.0, 400)
+    frf = Frf(lines, np.ones(400, complex))
+    curve = FrfCurve("table", "at rest", frf, frf, "force", "displacement")
+    assert len(repr(FrfResult("a machine", [curve] * 9))) < 200
+    assert len(repr(curve)) < 400

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from chatter.description.brief_repr import BriefRepr
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from dynamics.frf.container import Frf
@@ -24,8 +25,8 @@ _RATES = {"receptance": "", "mobility": "/s", "accelerance": "/s^2"}
 _LOADS = {"force": "N", "torque": "(N*m)"}
 
 
-@dataclass(frozen=True, eq=False)
-class FrfCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrfCurve(BriefRepr):
     """One FRF of a machine.
 
     Parameters
@@ -82,8 +83,8 @@ class FrfCurve:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class FrfResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrfResult(BriefRepr):
     """FRFs of a machine, by name."""
 
     machine: str

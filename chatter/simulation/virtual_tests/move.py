@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import rigid_motion
+from chatter.description.brief_repr import BriefRepr
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
@@ -44,8 +45,8 @@ class MovePlan:
     path: Path | PathInSpace | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class MoveResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class MoveResult(BriefRepr):
     """Signals of a move; columns are the axes of the plan."""
 
     name: str

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from chatter.description.arrays import Array, BooleanArray
+from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.methods.collocation.element_cut import element_cut
@@ -26,8 +27,8 @@ _BEYOND = 1.02
 _STEP_BESIDE = 0.03
 
 
-@dataclass(frozen=True, eq=False)
-class SpeedDepthSlice:
+@dataclass(frozen=True, eq=False, repr=False)
+class SpeedDepthSlice(BriefRepr):
     """Points over depth (m) and speed (n) at one radial depth and feed."""
 
     model: MillingModel  # at this radial depth and feed

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text
@@ -15,8 +16,8 @@ from chatter.studies.pitch_design.families import regeneration
 from chatter.studies.pitch_design.pitch_search import Design
 
 
-@dataclass(frozen=True, eq=False)
-class FamilyCurve:
+@dataclass(frozen=True, eq=False, repr=False)
+class FamilyCurve(BriefRepr):
     """Designs of a family over its difference."""
 
     name: str

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
@@ -29,8 +30,8 @@ _LEAST_GAIN = 1e-3
 _MEAN_WEIGHT = 1e-3
 
 
-@dataclass(frozen=True)
-class Design:
+@dataclass(frozen=True, repr=False)
+class Design(BriefRepr):
     """Pitch angles and the limits that they give."""
 
     name: str

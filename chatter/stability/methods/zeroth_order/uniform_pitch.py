@@ -27,6 +27,11 @@ class ZeroOrderLimit(NamedTuple):
     lowest_depth: float  # m, over all speeds
     lowest_frequency: float  # Hz
 
+    def __repr__(self) -> str:
+        """How many limits there are: the arrays would fill the screen."""
+        found = int(np.isfinite(self.critical_depth).sum())
+        return f"<ZeroOrderLimit of {self.spindle_speed.size} speeds (rad/s), {found} limits (m)>"
+
 
 def zero_order_limit(
     frequency: Array,
