@@ -6,6 +6,7 @@ import asyncio
 import http.client
 import re
 import shutil
+import socket
 import threading
 import time
 
@@ -207,6 +208,13 @@ def test_the_page_refers_to_nothing_elsewhere(server):
     assert status == 200
     assert b"https://" not in content
     assert b"http://" not in content
+
+
+def test_small_messages_leave_at_once(server):
+    """Bokeh's three writes a message would each wait 40 ms for an acknowledgement."""
+    listening = server._server._http._sockets.values()
+    assert listening
+    assert all(one.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) for one in listening)
 
 
 @pytest.mark.parametrize("path", ["/", "/guess/", "/static/js/bokeh.min.js"])

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import chatter
+from benchmarks.workbench_in_browser import TIME
 from chatter.app.workbench.server import WorkbenchServer
 from tests.chatter.app.browser_tab import browser, tab_of
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
@@ -139,6 +140,41 @@ def test_a_cut_a_machine_and_a_measurement_in_the_browser(tab, served, tmp_path)
     shot(tab, tmp_path, "diagnostic")
     tab.click_on("Studies", ".bk-tab")
     shot(tab, tmp_path, "studies")
+
+
+#: place in the window of a point of a diagram, and of the middle of a figure
+POINT = """
+(() => {
+  const limits = [...Bokeh.documents[0]._all_models.values()]
+    .find(one => one.data && "stable" in one.data && one.data.stable.length);
+  const plot = [...Bokeh.documents[0]._all_models.values()].find(one => one.renderers
+    && one.renderers.some(drawn => drawn.data_source === limits));
+  const view = Bokeh.index.find_one(plot);
+  view.el.scrollIntoView({block: "center"});
+  const box = view.canvas_view.el.getBoundingClientRect();
+  return [box.left + view.frame.x_scale.compute(SPEED),
+          box.top + view.frame.y_scale.compute(DEPTH)];
+})()
+"""
+
+
+def test_a_slider_moves_the_diagram_and_a_click_simulates(tab, served):
+    folder, server = served
+    shutil.copy(EXAMPLES / "two-degrees-of-freedom" / "case.toml", folder / "case.toml")
+    tab.open(server.url)
+    tab.wait_for_text("chatter lobes case.toml")
+    models = "[...Bokeh.documents[0]._all_models.values()]"
+    limit = f"{models}.find(one => one.data && 'stable' in one.data)"
+    tab.wait(f"{limit} && {limit}.data.stable.length === 200")
+    before = min(tab.value(f"[...{limit}.data.stable]"))
+    # milliseconds until the diagram is painted; a loaded machine is slow
+    assert tab.value(TIME.replace("VALUE", "900")) < 5000.0
+    tab.wait(f"{limit}.data.stable.length === 200")
+    tab.wait_for_text("material.Ktc=900 MPa")
+    assert min(tab.value(f"[...{limit}.data.stable]")) < before
+    tab.click(*tab.value(POINT.replace("SPEED", "16000").replace("DEPTH", "2")))
+    tab.wait_for_text("largest force")
+    assert "chatter (" in tab.value("pageText()")
 
 
 def test_nothing_is_asked_of_the_network(tab, served):

@@ -121,9 +121,7 @@ def test_progress_names_its_parts_and_never_goes_back():
 
 def test_every_number_of_a_picture_has_its_row(found):
     marked = [numbers for page in found.plot() if (numbers := _numbers(page))]
-    rows = [
-        [cut.name for cut in one.cuts if cut.name.startswith("pocket")] for one in found.cases
-    ]
+    rows = [[cut.name for cut in one.cuts if cut.name.startswith("pocket")] for one in found.cases]
     assert sorted(map(len, rows)) == sorted(map(len, marked))
     assert max(map(len, rows)) > 3
 
