@@ -11,7 +11,7 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import progress_bar
+from chatter.cli.progress import progress_bar, running
 from chatter.cli.results import present
 from chatter.description.errors import InputError
 from chatter.report.console import print_line, print_message, print_table
@@ -82,6 +82,7 @@ def detect(options_: DetectOptions) -> None:
     case = None
     if options_.case is not None:
         case = options.patched_case(options_.case, options_.assignments)
+    from chatter.io.formats.records import stem_of
     from chatter.monitoring.detect import detect as run_detect
 
     if options_.sound_card is not None and not options_.follow:
@@ -90,8 +91,10 @@ def detect(options_: DetectOptions) -> None:
         with _recorded(options_):
             _follow(options_, case)
 
-    folder = options.output_folder(options_.out, options_.recording.stem)
-    with progress_bar("spectra and verdicts"):
+    folder = options.output_folder(options_.out, stem_of(options_.recording))
+    # the stable speeds of a case are computed by kernels, spectra are not
+    shown = running if case is None else progress_bar
+    with shown("spectra and verdicts"):
         found = run_detect(
             options_.recording,
             spindle_speed=options_.spindle_speed,

@@ -10,7 +10,7 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import progress_bar
+from chatter.cli.progress import running
 from chatter.cli.results import present
 from chatter.description.errors import InputError
 from chatter.report.console import print_line, print_table
@@ -61,12 +61,13 @@ class ModesOptions:
 @takes_options
 def modes(options_: ModesOptions) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
+    from chatter.io.formats.records import stem_of
     from chatter.io.hammer_records import StatedRecord
     from chatter.monitoring.detect import sampling_frequency
     from chatter.studies.modal_test import modes as run_modes
 
-    folder = options.output_folder(options_.out, options_.files[0].stem or "modes")
-    with progress_bar("fitting modes to the responses"):
+    folder = options.output_folder(options_.out, stem_of(options_.files[0]) or "modes")
+    with running("fitting modes to the responses"):
         result = run_modes(
             options_.files,
             keep=options_.keep or (),

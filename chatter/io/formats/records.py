@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,8 @@ from dynamics.frf.container import MeasurementError
 MARK = "#"
 #: most records that a message lists
 _LISTED = 5
+#: characters that are left out of the name of a folder
+_NO_NAME = re.compile(r"[^\w.+-]+")
 
 Tables = Mapping[str, Table]
 
@@ -25,6 +28,12 @@ def stated_record(path: Path) -> tuple[Path, str]:
             return Path(given[:mark]), given[mark + 1 :]
         begin = mark + 1
     return path, ""
+
+
+def stem_of(path: Path) -> str:
+    """Name for what is written of a file, or of the record of it that a path names."""
+    file, record = stated_record(path)
+    return f"{file.stem}-{_NO_NAME.sub('-', record)}" if record else path.stem
 
 
 def of_file(path: Path, tables: Tables) -> Tables:

@@ -1,5 +1,7 @@
 """Files that hold several records: sheets, groups, structures, channels that come again."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.io
@@ -7,6 +9,7 @@ import scipy.signal
 
 from chatter import detect, modes
 from chatter.io.formats.format_list import read_frfs
+from chatter.io.formats.records import stem_of
 from chatter.io.hammer_records import read_hammer_folder, read_hammer_record, read_hammer_records
 from chatter.io.signals import read_signals
 from chatter.io.stated_columns import read_signal_table
@@ -53,12 +56,12 @@ def as_workbook(path):
     return path
 
 
-def as_tdms(path):
+def as_tdms(path, names="Tap {}"):
     nptdms = pytest.importorskip("nptdms")
     clock = {"wf_increment": 1.0 / RATE}
     with nptdms.TdmsWriter(path) as file:
         for k, (force, motion) in enumerate(BLOWS):
-            group = f"Tap {k + 1}"
+            group = names.format(k + 1)
             file.write_segment(
                 [
                     nptdms.ChannelObject(group, "Hammer", force, {**clock, "unit_string": "N"}),
@@ -284,3 +287,17 @@ def test_references_that_repeat_a_dataset_are_counted_each_time(tmp_path, monkey
         cells[:, 0] = [large.ref] * 100
     with pytest.raises(MeasurementError, match=r"unpacks to .* at most 1 MB"):
         read_signal_table(path)
+
+
+def test_each_record_has_its_folder_of_results(tmp_path):
+    path = as_structures(tmp_path / "tap.mat")
+    assert stem_of(Path(f"{path}#tap1")) == "tap-tap1"
+    assert stem_of(tmp_path / "tap.mat") == "tap"
+    book = tmp_path / "cuts 1.xlsx"
+    book.touch()
+    assert stem_of(Path(f"{book}#Cut 2 / fast")) == "cuts 1-Cut-2-fast"
+
+
+def test_the_name_of_a_record_may_have_a_stroke(tmp_path):
+    path = as_tdms(tmp_path / "a.tdms", names="run/{}")
+    np.testing.assert_allclose(read_hammer_record(f"{path}#run/2").force, BLOWS[1][0])
