@@ -117,4 +117,5 @@ def _leaves(variables: Variables, prefix: str = "") -> Iterator[tuple[str, np.nd
 
 def _elements(node: list[Node]) -> dict[str, Node]:
     """Elements of a structure or cell array by their numbers."""
-    return {f"({k + 1})": one for k, one in enumerate(node)}
+    # in brackets a number would be read as a unit
+    return {f" {k + 1}": one for k, one in enumerate(node)}

@@ -301,3 +301,21 @@ def test_each_record_has_its_folder_of_results(tmp_path):
 def test_the_name_of_a_record_may_have_a_stroke(tmp_path):
     path = as_tdms(tmp_path / "a.tdms", names="run/{}")
     np.testing.assert_allclose(read_hammer_record(f"{path}#run/2").force, BLOWS[1][0])
+
+
+def test_vectors_of_a_cell_array_are_columns_without_a_unit(tmp_path):
+    cells = np.empty((1, 3), dtype=object)
+    cells[0, 0], cells[0, 1], cells[0, 2] = TIME, *BLOWS[0]
+    scipy.io.savemat(tmp_path / "a.mat", {"data": cells})
+    stated = "time [s], force [N], acceleration [m/s^2]"
+    record = read_hammer_record(tmp_path / "a.mat", columns=stated)
+    np.testing.assert_allclose(record.force, BLOWS[0][0], atol=1e-6)
+
+
+def test_signals_of_other_times_are_no_record(tmp_path):
+    force, motion = BLOWS[0]
+    acceleration = {"t": TIME[::2], "y": motion[::2], "unit": "m/s^2"}
+    signals = {"force": {"t": TIME, "y": force, "unit": "N"}, "acc": acceleration}
+    scipy.io.savemat(tmp_path / "a.mat", signals)
+    with pytest.raises(MeasurementError, match=r"acc has other times than the signals before it"):
+        read_hammer_record(tmp_path / "a.mat")
