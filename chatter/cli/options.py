@@ -14,6 +14,7 @@ from chatter.description.case import MACHINE_PATH, Case, load
 from chatter.description.errors import InputError
 from chatter.description.material_words import coefficients_in_words, notes_on_material
 from chatter.description.patchable import Description
+from chatter.description.stated_cut import refuse_both_of_a_pair
 from chatter.report.console import print_message, print_notes
 from chatter.report.recording import document
 from chatter.stability.registry import AUTO, METHODS
@@ -94,6 +95,7 @@ def patched(described: Described, assignments: list[str] | None) -> Described:
     """Apply the assignments of the command line to a description that was read."""
     values = parse_assignments(assignments or [])
     refuse_bare_assignments(type(described), values)
+    refuse_both_of_a_pair(values)
     patched = described.patch(values) if values else described
     report = document()
     if report is not None:

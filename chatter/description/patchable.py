@@ -27,12 +27,13 @@ from chatter.description.path import (
     model_at,
     parse_path,
 )
+from chatter.description.quantities import QuantityField
 from chatter.description.renamed import Renamed, rename, rename_patch
 from chatter.description.section import Section
 from chatter.description.stated_range import range_spelt_out
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
-from chatter.description.units import parse, write
+from chatter.description.units import QuantityError, parse, write
 from chatter.description.whole_files import write_whole
 from chatter.description.wording import nearest, sentences, unknown_key
 
@@ -437,10 +438,16 @@ class Description(Section):
                 cls._collect_deviations(value, (*steps, index), found)
         elif isinstance(item, str):
             field = field_at(cls, steps)
-            if field is not None:
-                deviation = parse(item, field.matching(item).dimension).deviation
-                if deviation > 0.0:
-                    found[join_path(steps)] = deviation
+            if field is not None and (deviation := _deviation(item, field)) > 0.0:
+                found[join_path(steps)] = deviation
+
+
+def _deviation(item: str, field: QuantityField) -> float:
+    """Standard deviation (SI) of a quantity; 0 of a share of another value, such as "8 %"."""
+    try:
+        return parse(item, field.matching(item).dimension).deviation
+    except QuantityError:
+        return 0.0
 
 
 def copied(value: Any) -> Any:

@@ -6,13 +6,15 @@ cutting_speed = pi D n, feed_rate = f_z z n (ISO 3002-1; n in revolutions per ti
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from chatter.description.errors import InputError
 from chatter.description.path import Step, field_at
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.tool import Tool
-from chatter.description.units import QuantityError, parse, rpm
+from chatter.description.units import NUMBER, QuantityError, parse, rpm
 
 #: key as a shop states it -> key that it stands for
 STATED = {"cutting_speed": "spindle_speed", "feed_rate": "feed_per_tooth"}
@@ -63,6 +65,33 @@ def unsolved(data: Mapping[str, Any]) -> dict[tuple[Step, ...], str]:
         for stated, own in STATED.items()
         if given.get(stated) is not None
     }
+
+
+def share_in_length(path: str, text: str, diameter: float | None) -> str:
+    """Values or a range with shares of the diameter, m, of a key that may be one, as lengths.
+
+    "2..50 %" is meant as 2 %..50 %. Anything else stays as it is.
+    """
+    key = path.removeprefix("cut.")
+    if key not in _SHARES_OF_DIAMETER or key == path or "%" not in text or diameter is None:
+        return text
+    ends = text.split("..", 1)
+    if len(ends) == 2 and re.fullmatch(rf"\s*{NUMBER}\s*", ends[0]):
+        ends[0] += " %"
+
+    def length(found: re.Match[str]) -> str:
+        return f"{float(found[1]) * 10.0 * diameter:.12g} mm"
+
+    return "..".join(re.sub(rf"({NUMBER})\s*%", length, end) for end in ends)
+
+
+def refuse_both_of_a_pair(values: Mapping[str, Any]) -> None:
+    """Raise InputError where assignments give a spindle speed and a cutting speed, or such."""
+    for stated, own in STATED.items():
+        if values.get(f"cut.{stated}") is not None and values.get(f"cut.{own}") is not None:
+            raise InputError(
+                f"--set: cut.{stated}: cut.{own} is given as well; give one of the two"
+            )
 
 
 def _share(given: Any) -> float | None:

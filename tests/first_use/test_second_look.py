@@ -293,3 +293,30 @@ def test_parts_of_results_have_short_reprs():
     curve = FrfCurve("table", "at rest", frf, frf, "force", "displacement")
     assert len(repr(FrfResult("a machine", [curve] * 9))) < 200
     assert len(repr(curve)) < 400
+
+
+def test_a_width_in_percent_is_a_width_everywhere(tmp_path):
+    """`optimum` ended in "a fault in chatter itself", `--vary` refused what a case may state."""
+    narrow = cut(cut__radial_depth="25 %")
+    assert narrow.deviations() == {}
+    assert narrow.patch({"material.Ktc": "1900 +- 50 MPa"}).deviations() == {
+        "material.Ktc": pytest.approx(50e6)
+    }
+    from chatter.studies.whatif.variation import read_variation
+
+    # of 16 mm: 10 % are 1.6 mm, 50 % are 8 mm
+    ranged = read_variation("cut.radial_depth=10..50 %:3", narrow)
+    assert ranged.numbers == pytest.approx([1.6, 4.8, 8.0])
+    listed = read_variation("cut.radial_depth=10 %, 50 %", narrow)
+    assert listed.numbers == pytest.approx([1.6, 8.0])
+    assert ranged.unit == listed.unit == "mm"
+    with pytest.raises(InputError, match="plain number"):
+        read_variation("cut.axial_depth=10 %, 50 %", narrow)
+
+
+def test_two_speeds_in_one_command_are_refused(tmp_path):
+    """The one given first was left out without a word."""
+    both = ("--set", "cut.spindle_speed=8000 rpm", "--set", "cut.cutting_speed=100 m/min")
+    told = chatter_command("check", written(tmp_path), *both)
+    assert told.exit_code == 2
+    assert "cut.spindle_speed is given as well; give one of the two" in told.stderr

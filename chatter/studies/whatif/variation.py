@@ -18,6 +18,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
+from chatter.description.stated_cut import share_in_length
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor, write
 from chatter.studies.counted_range import counted_range
 from chatter.studies.model import PREFIX, field_of, unit_at, value_of
@@ -88,6 +89,8 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
             f"--vary {path}: {formatted(given.strip())} has no unit; a change is written in "
             f'percent of what stands, "+-{bare_change[1]}%"'
         )
+    if isinstance(model, Case):
+        given = share_in_length(path, given, model.tool and model.tool.diameter)
     parts = _split(given)
     if not parts:
         raise InputError(f"--vary {path}: there are no values; give some, {_EXAMPLE}")
