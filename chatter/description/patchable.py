@@ -33,7 +33,7 @@ from chatter.description.section import Section
 from chatter.description.stated_range import range_spelt_out
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
-from chatter.description.units import QuantityError, parse, write
+from chatter.description.units import DIMENSIONS, QuantityError, parse, write
 from chatter.description.whole_files import write_whole
 from chatter.description.wording import nearest, sentences, unknown_key
 
@@ -442,6 +442,14 @@ class Description(Section):
                 found[join_path(steps)] = deviation
 
 
+def _unit_of(stands: str, field: QuantityField) -> str:
+    """Unit of a text; that of SI in the place of a share of another value, such as "8 %"."""
+    try:
+        return parse(stands, field.dimension).unit
+    except QuantityError:
+        return DIMENSIONS[field.dimension].unit
+
+
 def _deviation(item: str, field: QuantityField) -> float:
     """Standard deviation (SI) of a quantity; 0 of a share of another value, such as "8 %"."""
     try:
@@ -465,7 +473,6 @@ def _like(value: Any, stands: Any, field: Any, steps: tuple[Step, ...]) -> Any:
         return value
     try:
         stood = field.matching(stands)
-        unit = parse(stands, stood.dimension).unit
-        return write(stood.read(value), unit, stood.dimension)
+        return write(stood.read(value), _unit_of(stands, stood), stood.dimension)
     except ValueError as error:
         raise InputError(f"{join_path(steps)}: {error}") from None

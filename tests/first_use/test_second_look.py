@@ -299,6 +299,7 @@ def test_a_width_in_percent_is_a_width_everywhere(tmp_path):
     """`optimum` ended in "a fault in chatter itself", `--vary` refused what a case may state."""
     narrow = cut(cut__radial_depth="25 %")
     assert narrow.deviations() == {}
+    assert narrow.patch({"cut.radial_depth": 3e-3}).cut.radial_depth == pytest.approx(3e-3)
     assert narrow.patch({"material.Ktc": "1900 +- 50 MPa"}).deviations() == {
         "material.Ktc": pytest.approx(50e6)
     }
