@@ -26,7 +26,9 @@ RUNS = {
     "friction": {},
     "friction and contact": {"contact": CONTACT},
 }
-FOURTH = {"friction and ploughing": {"process_damping": PLOUGHING, "tool.flank_wear": "0.08 mm"}}
+#: not published: the clearance angle
+FLANK = {"tool.clearance_angle": "7 deg", "tool.flank_wear": "0.08 mm"}
+FOURTH = {"friction and ploughing": {"process_damping": PLOUGHING, **FLANK}}
 #: the tool meets the corner of a block, which it has in full engagement 15 mm later
 STOCK = {"box": [{"x": ["15.5 mm", "110 mm"], "y": ["-25.5 mm", "-20 mm"], "z": ["0 mm", "5 mm"]}]}
 CHIPS = {

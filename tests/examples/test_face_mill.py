@@ -44,6 +44,16 @@ def test_chatter_sets_in_when_the_paper_says(example, entering):
     assert frequency == pytest.approx(50.0, rel=0.05)
 
 
+def test_every_run_has_what_it_needs(example, case):
+    """The fourth run ploughs, which asks for a clearance angle that the others do not need."""
+    begun = case.patch({"simulation.duration": "0.02 s"})
+    results = example.simulated(begun, {**example.RUNS, **example.FOURTH}, "dexel")
+    assert all(result.time[-1] >= 0.019 for result in results.values())
+    assert results["friction and ploughing"].case.tool.clearance_angle == pytest.approx(
+        0.1222, 1e-3
+    )
+
+
 @pytest.mark.nightly
 def test_voxels_and_dexels_agree_on_a_machine(example, case, entering):
     """Before chatter the forces agree as far as the grids allow; the onset within two turns."""
