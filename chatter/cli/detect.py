@@ -124,7 +124,7 @@ def _follow(options_: DetectOptions, case: Case | None) -> None:
         raise InputError("--columns is of a finished file; with --follow its heading names them")
     from chatter.monitoring.follow import follow
 
-    verdict = ""
+    verdict, told = "", False
     try:
         for one in follow(
             options_.recording,
@@ -138,6 +138,12 @@ def _follow(options_: DetectOptions, case: Case | None) -> None:
                 verdict = one.verdict
                 line = f", {one.chatter_frequency:.1f} Hz" if verdict == "chatter" else ""
                 print_message(f"{one.time:.2f} s: {verdict}{line}")
+            if one.speed_is_refuted and not told:
+                told = True
+                print_message(
+                    f"{one.time:.2f} s: the lines do not fit the spindle speed that is stated; "
+                    "nothing is called stable until they do"
+                )
     except KeyboardInterrupt:
         print_message("interrupted; what was written up to here follows")
 

@@ -179,6 +179,11 @@ def _with_speed(
     return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
 
 
+def other_speed_of(recording: Recording, given: float, teeth: int | None) -> OtherSpeed | None:
+    """Speed that the lines of a recording speak for, and not the given one, Hz; None where none."""
+    return LinesOfRecord(_frames(recording, given, _LONG), given, teeth).other_speed()
+
+
 def _stated_speed(
     recording: Recording, frames: Frames, given: float, teeth: int | None
 ) -> tuple[Revolution, OtherSpeed | None]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import deque
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.detection.spectral.activity import idle_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
-from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.frame_evidence import Evidence, other_speed_of
 from chatter.detection.spectral.line_of_cut import is_line_of_cut
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
@@ -31,6 +32,7 @@ from chatter.detection.spectral.segments import (
     STABLE,
 )
 from chatter.detection.spectral.spectra import Frames, above_floor, added_up, spectrum_of
+from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
 
 Array = NDArray[np.float64]
 
@@ -43,6 +45,8 @@ _WINDOWS, _QUARTER = 24, 4
 _RANGE, _SIGNIFICANT, _UNCERTAINTY = 0.015, 8.0, 1e-3
 #: such windows that a verdict rests on
 _HISTORY = 48
+#: such windows from one check of the speed to the next
+_CHECKED_EVERY = 16
 #: verdicts in a row of which the first is believed
 _IN_A_ROW = 2
 #: levels that tell idle from cutting
@@ -57,6 +61,8 @@ class Observation(NamedTuple):
     chatter_frequency: float  # Hz; nan without chatter
     share: float  # of the power, of the strongest line off the harmonics and its family
     spindle_frequency: float  # Hz
+    #: whether the lines of late do not fit the given speed, but another one far better
+    speed_is_refuted: bool = False
 
 
 class _Window(NamedTuple):
@@ -98,6 +104,15 @@ class RunningDetection:
         self._count = 0
         self._large = 0
         self._verdict = STABLE
+        self._speed_is_refuted = False
+        # beside the verdicts, which it would hold up
+        self._background = ThreadPoolExecutor(1)
+        self._checked: Future[OtherSpeed | None] | None = None
+
+    @property
+    def checks_speed(self) -> bool:
+        """Whether a check of the speed is under way, beside the verdicts."""
+        return self._checked is not None and not self._checked.done()
 
     def take(self, values: Array) -> list[Observation]:
         """Take samples (n, k); return an observation for each revolution that they complete."""
@@ -117,7 +132,9 @@ class RunningDetection:
         time = self._start.start + (self._taken + self._window) * self._start.time_step
         line = window.line
         frequency = line.frequency if self._verdict == CHATTER else math.nan
-        return Observation(time, self._verdict, frequency, line.share, self._speed)
+        return Observation(
+            time, self._verdict, frequency, line.share, self._speed, self._speed_is_refuted
+        )
 
     def _verdict_of(self, window: _Window) -> str:
         chattered = self._verdict == CHATTER
@@ -128,7 +145,8 @@ class RunningDetection:
         if self._is_idle():
             return IDLE
         if self._large < _IN_A_ROW:
-            return STABLE
+            # on the harmonics of a wrong speed lies what chatters as well
+            return NOT_JUDGED if self._speed_is_refuted else STABLE
         # looked at again as it goes on, for the more windows there are the surer it is
         return CHATTER if is_line_of_cut(*self._evidence(window)) else NOT_JUDGED
 
@@ -156,7 +174,20 @@ class RunningDetection:
         """Keep windows a quarter of their length apart."""
         if self._count % self._quarter == 0:
             self._history.append(window)
+            self._check_speed()
         self._count += 1
+
+    def _check_speed(self) -> None:
+        """Ask every so many windows, beside the verdicts, whether the lines refute the speed."""
+        if self._checked is not None and self._checked.done():
+            other = self._checked.result()
+            self._speed_is_refuted = other is not None and other.relation == REFUTED
+            self._checked = None
+        if self._checked is None and (self._count // self._quarter + 1) % _CHECKED_EVERY == 0:
+            joined = _joined([one.recording for one in self._history])
+            self._checked = self._background.submit(
+                other_speed_of, joined, self._given, self._teeth
+            )
 
     def _evidence(self, window: _Window) -> tuple[Evidence, slice]:
         """What the windows of late say, and in which of them the line of the last one is."""

@@ -35,9 +35,9 @@ def made(begin, seconds=4.0):
     return 0.05 * (values + 4.0 * during(time, begin, seconds) * chatter_part)
 
 
-def running(values):
+def running(values, revolution=REVOLUTION):
     start = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:256, None])
-    return RunningDetection(start, REVOLUTION, TEETH)
+    return RunningDetection(start, revolution, TEETH)
 
 
 def test_a_verdict_every_revolution_and_chatter_within_the_window():
@@ -53,6 +53,37 @@ def test_a_verdict_every_revolution_and_chatter_within_the_window():
     assert 2.0 < first.time < 2.0 + 16.0 / REVOLUTION
     assert {one.verdict for one in found if one.time > first.time} == {"chatter"}
     assert found[-1].chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
+
+
+@pytest.mark.parametrize("factor", [0.8, 1.2])
+@pytest.mark.parametrize("begin", [0.0, 9.0])
+def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(factor, begin):
+    values = made(begin)[:, None]
+    found = running(values[:, 0], factor * REVOLUTION)
+    observed = []
+    for part in np.array_split(values, 40):
+        observed += found.take(part)
+        # the check goes on beside the verdicts: as long as it may take where samples come in time
+        deadline = clock_time.monotonic() + 20.0
+        while found.checks_speed and clock_time.monotonic() < deadline:
+            clock_time.sleep(0.005)
+    last = observed[-1]
+    assert last.speed_is_refuted
+    assert last.verdict != "stable"
+    assert not observed[0].speed_is_refuted
+
+
+def test_the_right_speed_is_not_refuted():
+    for begin in (0.0, 9.0):
+        values = made(begin)[:, None]
+        found = running(values[:, 0])
+        for part in np.array_split(values, 40):
+            last = [*found.take(part), None][0]
+            while found.checks_speed:
+                clock_time.sleep(0.005)
+        assert last is not None
+        assert not last.speed_is_refuted
+        assert last.verdict == ("chatter" if begin == 0.0 else "stable")
 
 
 def test_the_parts_in_which_samples_come_do_not_matter():
