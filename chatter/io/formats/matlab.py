@@ -15,14 +15,12 @@ from chatter.io.files import read_content
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_tables
 from chatter.io.formats.matlab_hdf5 import variables_of_hdf5
-from chatter.io.formats.matlab_records import Node, tables_of_variables
+from chatter.io.formats.matlab_records import DEPTH, Node, require_count, tables_of_variables
 from chatter.io.formats.named_arrays import require_size
 from chatter.io.formats.records import Tables, of_file, only_record
 from dynamics.frf.container import MeasurementError
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-#: how deep structures of structures are followed, and most elements of one array of them
-_DEPTH, _MOST_ELEMENTS = 4, 4096
 #: type of a compressed data element of version 5, and bytes unpacked at a time
 _COMPRESSED, _BLOCK = 15, 2**20
 
@@ -51,11 +49,11 @@ def _of_version_5(path: Path) -> dict[str, Node]:
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no MAT file that can be read: {error}") from error
     named = {name: one for name, one in content.items() if not name.startswith("__")}
-    nodes = {name: _node(one) for name, one in named.items()}
+    nodes = {name: _node(path, name, one) for name, one in named.items()}
     return {name: one for name, one in nodes.items() if one is not None}
 
 
-def _node(value: Any, depth: int = 0) -> Node | None:
+def _node(path: Path, called: str, value: Any, depth: int = 0) -> Node | None:
     """Numbers, text, structure or list of elements; None of what is none of these."""
     # tables and other objects of MATLAB, which only it can read
     if not isinstance(value, np.ndarray) or isinstance(value, scipy.io.matlab.MatlabOpaque):
@@ -64,18 +62,20 @@ def _node(value: Any, depth: int = 0) -> Node | None:
         if value.dtype.kind not in "US":
             return value
         return str(value.ravel()[0]) if value.size == 1 else None
-    if depth > _DEPTH or not 0 < value.size <= _MOST_ELEMENTS:
+    if depth > DEPTH or value.size == 0:
         return None
+    require_count(path, called, value.size)
     elements = value.ravel(order="F")
     if value.dtype.names is None:
-        return [one for one in (_node(each, depth + 1) for each in elements) if one is not None]
-    structures = [_fields(one, value.dtype.names, depth) for one in elements]
+        nodes = (_node(path, called, each, depth + 1) for each in elements)
+        return [one for one in nodes if one is not None]
+    structures = [_fields(path, one, value.dtype.names, depth) for one in elements]
     return structures[0] if value.size == 1 else structures
 
 
-def _fields(element: Any, names: Sequence[str], depth: int) -> dict[str, Node]:
+def _fields(path: Path, element: Any, names: Sequence[str], depth: int) -> dict[str, Node]:
     """Fields of a structure that hold numbers, text or structures."""
-    nodes = {name: _node(element[name], depth + 1) for name in names}
+    nodes = {name: _node(path, name, element[name], depth + 1) for name in names}
     return {name: one for name, one in nodes.items() if one is not None}
 
 

@@ -8,12 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from chatter.io.formats.matlab_records import Node
+from chatter.io.formats.matlab_records import DEPTH, Node, require_count
 from chatter.io.formats.named_arrays import require_size
 from dynamics.frf.container import MeasurementError
 
-#: how deep structures of structures are followed, and most elements of one array of them
-_DEPTH, _MOST_ELEMENTS = 4, 4096
 #: characters of a text that may name a unit
 _LONGEST_TEXT = 256
 
@@ -54,7 +52,7 @@ class _Reader:
     def node(self, item: Any, depth: int) -> Node | None:
         """Numbers, text, structure or list of elements; None of what is none of these."""
         if isinstance(item, self.h5py.Group):
-            if depth > _DEPTH or "MATLAB_sparse" in item.attrs:
+            if depth > DEPTH or "MATLAB_sparse" in item.attrs:
                 return None
             elements = self._elements_of_array(item)
             if elements is None:
@@ -64,7 +62,7 @@ class _Reader:
             return None
         if item.dtype == self.h5py.ref_dtype:
             nodes = [self.node(self.file[one], depth + 1) for one in self._references(item)]
-            return [one for one in nodes if one is not None] if depth <= _DEPTH else None
+            return [one for one in nodes if one is not None] if depth <= DEPTH else None
         kind = item.attrs.get("MATLAB_class", b"")
         self._count(item)
         if bytes(kind) == b"char":
@@ -103,11 +101,7 @@ class _Reader:
 
     def _references(self, dataset: Any) -> list[Any]:
         """References in the order of MATLAB, as many as are followed."""
-        if dataset.size > _MOST_ELEMENTS:
-            raise MeasurementError(
-                f"{self.path}: {dataset.name} has {dataset.size} elements; at most "
-                f"{_MOST_ELEMENTS} are read"
-            )
+        require_count(self.path, dataset.name, dataset.size)
         return [one for one in np.asarray(dataset[()]).ravel() if one]
 
     def _count(self, dataset: Any) -> None:

@@ -16,10 +16,20 @@ from dynamics.frf.container import MeasurementError
 Node: TypeAlias = "np.ndarray | str | dict[str, Node] | list[Node]"
 Variables: TypeAlias = "Mapping[str, Node]"
 
+#: how deep structures of structures are followed, and most elements of one array of them
+DEPTH, MOST_ELEMENTS = 4, 4096
 #: fields of a signal that hold its time, its numbers and its unit, in lower case
 _TIMES = ("t", "time")
 _VALUES = ("y", "data", "values", "value", "signal")
 _UNITS = ("unit", "units")
+
+
+def require_count(path: Path, name: str, count: int) -> None:
+    """Raise MeasurementError where an array of structures has more elements than are read."""
+    if count > MOST_ELEMENTS:
+        raise MeasurementError(
+            f"{path}: {name} has {count} elements; at most {MOST_ELEMENTS} are read"
+        )
 
 
 def tables_of_variables(path: Path, variables: Variables) -> dict[str, Table]:

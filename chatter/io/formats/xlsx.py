@@ -49,21 +49,26 @@ def read_sheets(path: Path) -> Tables:
 def _tables(
     path: Path, sheets: Mapping[str, Sequence[str]], names: Sequence[str]
 ) -> dict[str, Table]:
-    """Tables of sheets by name; of several those that are no table are passed over."""
-    found, faults = {}, []
+    """Tables of sheets by name; a few numbers that are no table are notes and passed over.
+
+    MeasurementError where a sheet with as many rows as a record is none, as it may be one.
+    """
+    rows = {name: _rows_of_numbers(sheets[name]) for name in names}
+    found: dict[str, Table] = {}
     for name in names:
         try:
             found[name] = table_of_lines(path, sheets[name])
         except MeasurementError as error:
-            faults.append(error)
-    if not found:
-        raise faults[0]
+            if _FAR_MORE * rows[name] > max(rows.values()):
+                reason = str(error).removeprefix(f"{path}: ")
+                where = f"{path}: sheet {name}" if len(names) > 1 else str(path)
+                raise MeasurementError(f"{where}: {reason}") from error
     return found
 
 
 def _sheets_of_records(path: Path, sheets: Mapping[str, Sequence[str]]) -> list[str]:
     """Names of the sheets with rows of numbers, or of that with far more than any other."""
-    counts = {name: sum(map(_has_numbers, lines)) for name, lines in sheets.items()}
+    counts = {name: _rows_of_numbers(lines) for name, lines in sheets.items()}
     filled = [name for name in counts if counts[name]]
     if not filled:
         raise MeasurementError(f"{path}: no sheet holds rows of numbers")
@@ -83,6 +88,10 @@ def _text(cell: object) -> str:
     if isinstance(cell, float):
         return repr(cell)
     return "" if cell is None else " ".join(str(cell).split())
+
+
+def _rows_of_numbers(lines: Sequence[str]) -> int:
+    return sum(map(_has_numbers, lines))
 
 
 def _has_numbers(line: str) -> bool:

@@ -319,3 +319,21 @@ def test_signals_of_other_times_are_no_record(tmp_path):
     scipy.io.savemat(tmp_path / "a.mat", signals)
     with pytest.raises(MeasurementError, match=r"acc has other times than the signals before it"):
         read_hammer_record(tmp_path / "a.mat")
+
+
+def test_a_sheet_as_long_as_a_record_that_lacks_its_heading_is_named(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    path = as_workbook(tmp_path / "taps.xlsx")
+    book = openpyxl.load_workbook(path)
+    book["Tap 2"].delete_rows(1)
+    book.save(path)
+    with pytest.raises(MeasurementError, match=r"taps\.xlsx: sheet Tap 2: no heading with names"):
+        read_hammer_records(path)
+
+
+def test_an_array_of_too_many_structures_is_refused_and_not_left_out(tmp_path):
+    elements = np.empty((1, 5000), dtype=[("force_N", object)])
+    elements["force_N"] = 1.0
+    scipy.io.savemat(tmp_path / "a.mat", {"taps": elements, "t_s": TIME, "force_N": BLOWS[0][0]})
+    with pytest.raises(MeasurementError, match=r"taps has 5000 elements; at most 4096 are read"):
+        read_signal_table(tmp_path / "a.mat")
