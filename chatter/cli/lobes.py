@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,6 +23,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.formatting import rounded_down
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
@@ -193,7 +193,7 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
 
 def _stable_below(depth: float) -> str:
     if depth > 0.0:
-        return f"stable at any of these speeds below {_rounded_down(depth)} mm"
+        return f"stable at any of these speeds below {rounded_down(depth)} mm"
     return "no depth is stable at any speed for certain"
 
 
@@ -212,9 +212,3 @@ def _taken_off(diagram: StabilityDiagram) -> str:
 
 def _millimetres(depth: float | None, max_depth: float) -> str:
     return f"> {max_depth:.4g}" if depth is None else f"{depth:.4g}"
-
-
-def _rounded_down(depth: float) -> str:
-    """Depth to three digits, none of which is too large."""
-    unit = 10.0 ** (math.floor(math.log10(depth)) - 2)
-    return f"{math.floor(depth / unit) * unit:.3g}"

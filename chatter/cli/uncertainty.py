@@ -35,7 +35,7 @@ class UncertaintyOptions:
     case: CaseFile
     samples: Annotated[int, typer.Option("--samples", help="Number of samples.")] = 200
     seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1
-    speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 31
+    speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 121
     assignments: Assignments = None
     method: Method = None
     cluster: Cluster = None

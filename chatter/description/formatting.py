@@ -1,5 +1,6 @@
 """Values as messages show them: short, printable, as they stand in a case file."""
 
+import math
 from typing import Any
 
 _LONGEST = 60
@@ -26,6 +27,12 @@ def printable(text: str, longest: int = _LONGEST) -> str:
     """Return text without control characters and cut to what fits a message."""
     clean = "".join(part if part.isprintable() else "?" for part in text[: longest + 1])
     return clean if len(clean) <= longest else clean[:longest] + "..."
+
+
+def rounded_down(value: float, digits: int = 3) -> str:
+    """Positive number to so many significant digits, none of which makes it larger."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return f"{math.floor(value / unit * (1.0 + 1e-12)) * unit:.{digits}g}"
 
 
 def to_digits(value: float, digits: int = 2) -> str:

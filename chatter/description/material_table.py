@@ -10,6 +10,7 @@ from typing import Any
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.law_section import FORCE_LAWS
+from chatter.description.ranges import stated_ends
 from chatter.description.toml_document import parse_document, read_text
 from chatter.description.units import QuantityError, parse
 from cutting.keys import Key, with_defaults
@@ -64,29 +65,71 @@ def read_material_table(path: str | Path) -> dict[str, MaterialRow]:
 _MISSPELT = 0.8
 
 
-def row_named(name: str, rows: Mapping[str, MaterialRow] = MATERIALS) -> MaterialRow:
-    """Row of a table; ValueError with the nearest names where there is none."""
-    row = rows.get(name)
-    if row is not None:
-        return row
+def row_named(
+    name: str, rows: Mapping[str, MaterialRow] = MATERIALS, condition: str | None = None
+) -> MaterialRow:
+    """Row of a table, by its name or by a grade that it holds; see `name_of_row`."""
+    return rows[name_of_row(name, rows, condition)]
+
+
+def name_of_row(
+    name: str, rows: Mapping[str, MaterialRow] = MATERIALS, condition: str | None = None
+) -> str:
+    """Name of a row that is given by it, or by a grade and, where several hold it, a condition.
+
+    ValueError where no row or several are meant, with the nearest or with what chooses.
+    """
+    graded = _rows_of_grade(name, rows) if name not in rows else []
+    if condition is not None:
+        return _row_in_condition(name, rows, [name] if name in rows else graded, condition)
+    if name in rows:
+        return name
+    if len(graded) == 1 and rows[graded[0]].is_grade(name):
+        return graded[0]
     raise ValueError(
-        f"{formatted(name)} is not in the table of materials; {_hint(name, rows)}"
+        f"{formatted(name)} is not in the table of materials; {_hint(name, rows, graded)}"
         f"`chatter materials` lists all {len(rows)}, `chatter materials WORD` searches"
     )
 
 
-def _hint(name: str, rows: Mapping[str, MaterialRow]) -> str:
+def _row_in_condition(
+    name: str, rows: Mapping[str, MaterialRow], among: list[str], condition: str
+) -> str:
+    """The one of some rows whose condition or name has all words of a condition."""
+    words = condition.lower().replace(",", " ").split()
+    found = [one for one in among if words and all(word in rows[one].state(one) for word in words)]
+    if len(found) == 1:
+        return found[0]
+    if not among:
+        return name_of_row(name, rows)
+    several = "chooses none" if not found else f"leaves {len(found)}"
+    raise ValueError(
+        f"condition = {formatted(condition)} {several} of the rows of {formatted(name)}: "
+        f"{_choices(found or among, rows)}"
+    )
+
+
+def _choices(names: Iterable[str], rows: Mapping[str, MaterialRow]) -> str:
+    """Conditions and names of rows, to choose one."""
+    return ", ".join(
+        f'"{rows[name].condition}" is "{name}"' if rows[name].condition else f'"{name}"'
+        for name in names
+    )
+
+
+def _hint(name: str, rows: Mapping[str, MaterialRow], graded: list[str]) -> str:
     """Rows that may be meant; a grade is in one row for each condition of it."""
-    of_grade = [f'"{one}"' for one in _rows_of_grade(name, rows)]
-    if len(of_grade) > 1:
-        listed = ", ".join(of_grade[:-1])
-        return f"it is a grade of {listed} and {of_grade[-1]}; "
+    if len(graded) > 1:
+        return (
+            f"it is a grade of {len(graded)} rows, of which material.condition chooses, or name by "
+            f"the name of a row: {_choices(graded, rows)}; "
+        )
     misspelt = difflib.get_close_matches(name[:60], rows, n=1, cutoff=_MISSPELT)
-    family = "" if of_grade or misspelt else words_of_family(name, rows)
+    family = "" if graded or misspelt else words_of_family(name, rows)
     if family:
         return f"{family}; "
     near = misspelt or difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
-    meant = of_grade or [f'"{one}"' for one in near]
+    meant = [f'"{one}"' for one in graded or near]
     return f"did you mean {meant[0]}? " if meant else ""
 
 
@@ -197,8 +240,9 @@ class _Row:
         given = self.given.get(_RANGE)
         if given is None:
             return None
+        given = (stated_ends(given) or given) if isinstance(given, str) else given
         if not isinstance(given, list) or len(given) != 2:
-            self._problem(_RANGE, f'{formatted(given)} is given, ["0.02 mm", "0.2 mm"] is required')
+            self._problem(_RANGE, f'{formatted(given)} is given, "0.02..0.2 mm" is required')
             return None
         low, high = (self._quantity(_RANGE, one, "length") for one in given)
         if low is None or high is None:

@@ -32,7 +32,7 @@ def coefficients_in_words(case: Case) -> str | None:
     material = case.material
     if material is None:
         return None
-    named = f"{material.name}: " if material.name else ""
+    named = f"{material.row_name}: " if material.name else ""
     return f"coefficients: {named}{values_in_words(material.law, material.values)}"
 
 

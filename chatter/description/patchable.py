@@ -30,7 +30,7 @@ from chatter.description.path import (
 from chatter.description.quantities import QuantityField
 from chatter.description.renamed import Renamed, rename, rename_patch
 from chatter.description.section import Section
-from chatter.description.stated_range import range_spelt_out
+from chatter.description.stated_range import open_stated_ranges, ranges_spelt_out
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
 from chatter.description.units import DIMENSIONS, QuantityError, parse, write
@@ -194,6 +194,7 @@ class Description(Section):
             try:
                 steps = cls._steps(key)
                 cls._check_known(steps)
+                open_stated_ranges(cls, document, steps)
                 set_value(document, steps, plain(value, steps, cls.NOUN), cls.LAYOUT)
             except InputError as error:
                 raise InputError([f"{path}: {text}" for text in error.messages]) from None
@@ -222,6 +223,7 @@ class Description(Section):
         plain_data = document.unwrap()
         if long := long_lists(plain_data):
             raise InputError([f"{name}: {text}" for text in long])
+        plain_data = ranges_spelt_out(cls, (), plain_data)
         made = cls._validated(plain_data, name, folder, is_foreign=is_foreign)
         made._document = document
         made._notes = tuple(f"{name}: {note}" for note in notes)
@@ -307,7 +309,7 @@ class Description(Section):
                 notes += renamed
                 self._check_known(steps)
                 unknown += self._newly_made(data, steps)
-                given = range_spelt_out(type(self), steps, given)
+                given = ranges_spelt_out(type(self), steps, given)
                 given = self._in_given_unit(data, steps, given)
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))
@@ -374,6 +376,7 @@ class Description(Section):
         # only what is written needs it, so that patches do not carry its comments about
         document = copy.deepcopy(self._document)
         for steps, value in self._edits:
+            open_stated_ranges(type(self), document, steps)
             set_value(document, steps, copied(value), self.LAYOUT)
         give_bare_numbers_their_unit(type(self), document)
         return document

@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from chatter.description import units
 from chatter.description.formatting import formatted
 from chatter.description.magnitudes import is_plausible, words_of_range
+from chatter.description.ranges import stated_ends
 
 #: unit in which people state what a bare number states in SI, by dimension
 _MEANT = {"angle": "deg", "length": "mm", "number": "%", "pressure": "MPa"}
@@ -22,6 +23,8 @@ _TEXT_PATTERN = (
     rf"^\s*({units.NUMBER}(\s*(\+-|\+/-|±)\s*{units.NUMBER})?\s*[A-Za-z%°\u00b5\u03bc(1].*"
     r"|[+-]?0+\.?0*)\s*$"
 )
+#: of a range as text: FROM..TO, a unit behind TO, perhaps :COUNT
+RANGE_PATTERN = rf"^\s*{units.NUMBER}.*\.\.\s*{units.NUMBER}\s*[A-Za-z%°\u00b5\u03bc].*$"
 
 
 @dataclass(frozen=True)
@@ -248,6 +251,29 @@ def quantities(count: int, dimension: str, **bounds: float) -> Any:
     description = f"{count} quantities, each {field.noun}"
     kind = GenericAlias(tuple, (float,) * count)
     return list_type(kind, read, field, description, count, count)
+
+
+def ends_of_range(dimension: str, **bounds: float) -> Any:
+    """Return the field type of a range, "FROM..TO" or a list of two; bounds as for `quantity`."""
+    field = QuantityField(dimension, **bounds)
+    first, last = (one.strip('"') for one in _examples(field, 2))
+    wanted = f'is given; a range is required, such as "{first}..{last}" or ["{first}", "{last}"]'
+    read = list_reader(field, wanted, 2, 2)
+
+    def read_either(given: Any) -> tuple[float, ...]:
+        return read(stated_ends(given) or given if isinstance(given, str) else given)
+
+    entry = {"anyOf": field.json_schema()["anyOf"]}
+    schema = {
+        "description": f"a range, each end {field.noun}",
+        "anyOf": [
+            {"type": "array", "items": entry, "minItems": 2, "maxItems": 2},
+            {"type": "string", "pattern": RANGE_PATTERN, "examples": [f"{first}..{last}"]},
+        ],
+    }
+    return Annotated[
+        tuple[float, float], BeforeValidator(read_either), WithJsonSchema(schema), field
+    ]
 
 
 def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> Any:

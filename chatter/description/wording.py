@@ -89,8 +89,6 @@ def _wrong_type(item: Any, steps: tuple[Step, ...]) -> str:
     if kind.startswith(("model", "dict")):
         tables = isinstance(given, list) and given and all(isinstance(e, dict) for e in given)
         hint = f"; write [{key}], not [[{key}]]" if tables else ""
-        if isinstance(given, str) and ".." in given:
-            hint = ' such as { from = "3000 rpm", to = "9000 rpm", count = 200 }'
         return f"{formatted(given)} is given, a table is required{hint}"
     if kind.startswith(("tuple", "list")):
         table = join_path(steps)

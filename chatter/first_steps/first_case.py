@@ -10,6 +10,8 @@ import tomlkit
 
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
+from chatter.description.formatting import to_digits
+from chatter.description.units import rpm
 
 
 class Question(NamedTuple):
@@ -67,8 +69,19 @@ def first_case(answers: dict[str, str], folder: str | Path = ".") -> str:
     document.add("cut", _cut(answers["cut"], answers["engagement"]))
     document.add("structure", _structure(answers["dynamics"]))
     text = tomlkit.dumps(document)
-    _refuse_unusable(loads(text, "the new case", folder))
-    return text
+    case = loads(text, "the new case", folder)
+    _refuse_unusable(case)
+    return f"{text}\n{_range_of_diagram(case)}"
+
+
+def _range_of_diagram(case: Case) -> str:
+    """Comment with the range of speeds of a diagram, from half the speed of the cut to twice it."""
+    speed = float(rpm(case.cut.spindle_speed))
+    low, high = (to_digits(share * speed, 4) for share in (0.5, 2.0))
+    return (
+        "# speeds of the stability diagram, where it is not to choose them itself:\n"
+        f'# [lobes]\n# speeds = "{low}..{high} rpm:400"\n'
+    )
 
 
 def check_answer(name: str, answer: str) -> None:

@@ -31,6 +31,11 @@ class SheetCut(NamedTuple):
         """Share of the limit that is kept in hand; negative beyond the limit."""
         return None if self.limit is None else 1.0 - self.axial_depth / self.limit
 
+    def __repr__(self) -> str:
+        """What the line says first."""
+        speed = "any speed" if self.spindle_speed is None else f"{self.spindle_speed:.6g} rpm"
+        return f"<SheetCut {self.name}: {self.axial_depth:.4g} mm at {speed}, {self.verdict}>"
+
 
 class CaseCuts(NamedTuple):
     """Cuts of one case."""
@@ -39,6 +44,10 @@ class CaseCuts(NamedTuple):
     diagram: StabilityDiagram
     cuts: tuple[SheetCut, ...]
     variation: Variation | None
+
+    def __repr__(self) -> str:
+        """Of which case, and how many: the cuts would fill the screen."""
+        return f"<CaseCuts of {self.case.name!r}: {len(self.cuts)} cuts>"
 
 
 def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.units import rpm
 from chatter.plots import style
+from chatter.stability.neglected_effects import CHATTER, STABLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,9 +35,10 @@ def plot_check(result: StabilityCheck) -> Figure:
         axes.axvspan(start, end, color=fill)
         if end - start > 0.12 * ends[-1]:
             axes.text(0.5 * (start + end), 0.8, word, ha="center", va="center")
+    colour = {STABLE: style.GREEN, CHATTER: style.RED}.get(result.verdict, style.ORANGE)
     axes.plot(
-        depth, 0.35, "o", color=style.BLUE if result.stable else style.RED,
-        markeredgecolor="black", markersize=9, label=f"this cut, {depth:.4g} mm",
+        depth, 0.35, "o", color=colour, markeredgecolor="black", markersize=9,
+        label=f"this cut, {depth:.4g} mm, {result.verdict}",
     )  # fmt: skip
     axes.set(
         xlim=(0.0, ends[-1]), ylim=(0.0, 1.0), yticks=[],

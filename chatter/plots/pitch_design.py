@@ -36,7 +36,7 @@ def draw_limits(axes: Axes, found: PitchResult) -> None:
         angles = ", ".join(f"{angle:g}" for angle in design.pitch)
         known = np.where(limits < found.max_depth, limits * 1e3, np.nan)
         axes.plot(speed, known, color=colour, linewidth=1.6, label=f"{name}: {angles} deg")
-        lowest = float(limits.min()) * 1e3
+        lowest = design.lowest_limit * 1e3
         # below all of its own curve; beside the axes, where no other one passes through it
         axes.axhline(lowest, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
         axes.annotate(

@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from chatter.description.arrays import Array, IntegerArray
 from chatter.description.units import rpm
 from chatter.plots import style
-from chatter.stability.neglected_effects import lowest_factor
+from chatter.stability.neglected_effects import highest_factor, lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
 
@@ -229,22 +229,50 @@ def _searched(diagram: StabilityDiagram, left: IntegerArray, share: Array) -> Ar
 
 
 def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
-    """Hatch, below each limit, how far edge forces that are left out may lower it."""
-    kept = lowest_factor(diagram.neglected_at_all_speeds)
-    if kept == 1.0:
+    """Hatch, about each limit, how far edge forces that are left out may lower or raise it.
+
+    As `deciding` judges a point: where a speed has no limit, nothing bounded is left out.
+    """
+    effects = diagram.neglected_at_all_speeds
+    low, high = lowest_factor(effects), highest_factor(effects)
+    if low == high == 1.0:
         return
-    # between values as the fill: where intervals come or go the first limit jumps
+    # between values as the fill: where intervals come or go limits jump
     x, left, share = _columns(diagram.axis.values)
-    between = [_between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)]
-    first = np.array([found[0] if len(found) else math.inf for found in between])
     refused = np.isnan(diagram.limits.critical_depth)
     nearer = np.where(share < 0.5, left, np.minimum(left + 1, refused.size - 1))
-    limit = np.minimum(first, top) * 1e3
-    axes.fill_between(
-        x, kept * limit, limit, where=~refused[nearer], facecolor="none",
-        edgecolor=style.ORANGE, hatch="///", linewidth=0.0, alpha=0.55, zorder=0.8,
-        label="not certain: edge forces",
-    )  # fmt: skip
+    if low == 0.0:
+        bands = [(np.zeros(x.size), np.full(x.size, top))]
+    else:
+        between = [
+            _between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)
+        ]
+        bands = _not_certain(between, low, high)
+    for number, (first, last) in enumerate(bands):
+        axes.fill_between(
+            x, 1e3 * first, 1e3 * np.minimum(last, top),
+            where=~refused[nearer] & (first < top), facecolor="none",
+            edgecolor=style.ORANGE, hatch="///", linewidth=0.0, alpha=0.55, zorder=0.8,
+            label="not certain: edge forces" if number == 0 else None,
+        )  # fmt: skip
+
+
+def _not_certain(crossings: Sequence[Array], low: float, high: float) -> list[tuple[Array, Array]]:
+    """Bands (lower and upper ends, m, nan where there is none) about limits that may be elsewhere.
+
+    A limit at which stability is lost lies between the factors `low` and `high` of itself; the
+    limits next to it bound the band.
+    """
+    bands = []
+    for index in range(0, max((len(found) for found in crossings), default=0), 2):
+        ends = np.full((len(crossings), 2), math.nan)
+        for column, found in enumerate(crossings):
+            if index < len(found):
+                before = found[index - 1] if index else 0.0
+                after = found[index + 1] if index + 1 < len(found) else math.inf
+                ends[column] = max(before, low * found[index]), min(after, high * found[index])
+        bands.append((ends[:, 0], ends[:, 1]))
+    return bands
 
 
 def _mark_case(axes: Axes, x: float, y: float, inside: Array) -> None:

@@ -44,8 +44,10 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
         linewidth=0.0, label="5 to 95 % of the limits",
     )  # fmt: skip
     for row in found.limits[:_DRAWN_SAMPLES] * 1e3:
-        axes.plot(speed, _finite(row), color=style.BLUE, linewidth=0.35, alpha=0.35)
-    axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
+        axes.plot(speed, _to_the_top(row, top), color=style.BLUE, linewidth=0.35, alpha=0.35)
+    axes.plot(
+        speed, _to_the_top(middle, top), color=style.BLUE, linewidth=1.8, label="median limit"
+    )
     ends = found.interval
     label = f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})"
     if found.for_certain_in_words():
@@ -64,8 +66,11 @@ def _highest_depth(found: Uncertainty, high: np.ndarray, top: float) -> float:
     return min(top, 1.1 * max(float(high.max()), found.case.cut.axial_depth * 1e3))
 
 
-def _finite(values: np.ndarray) -> np.ndarray:
-    return np.where(np.isfinite(values), values, np.nan)
+def _to_the_top(values: np.ndarray, top: float) -> np.ndarray:
+    """Curve that leaves the picture beside speeds without a limit; it ended short of its top."""
+    known = np.isfinite(values)
+    beside = ~known & (np.append(known[1:], False) | np.insert(known[:-1], 0, False))
+    return np.where(beside, 1.02 * top, np.where(known, values, np.nan))
 
 
 def draw_distribution(axes: Axes, found: Uncertainty) -> None:

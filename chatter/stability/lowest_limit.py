@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,11 @@ class LowestLimit(NamedTuple):
     chatter_frequency: float  # Hz
 
 
+_NONE = LowestLimit(np.nan, np.nan, np.nan)
+#: limits at speeds, rad/s, up to a depth, m, in a round
+LimitsBetween = Callable[[Array, float, int], "list[LowestLimit]"]
+
+
 def lowest_limit(
     method: StabilityMethod,
     model: MillingModel,
@@ -41,28 +47,43 @@ def lowest_limit(
     of these: what is left is a 1/64 of the spacing. None is looked for below the highest of these
     minima. `progress` is called with (done, total).
     """
-    found = [_of(curve, index) for index in _minima(curve.critical_depth)]
-    if not found:
-        return LowestLimit(np.nan, np.nan, np.nan)
-    if method.name != _QUICK or curve.spindle_speed.size < 2 or model.depends_on_speed:
-        return found[0]
-    spacing = float(np.diff(curve.spindle_speed).max())
+    samples = [_of(curve, index) for index in range(curve.spindle_speed.size)]
+    if method.name != _QUICK or model.depends_on_speed:
+        return next(iter(_lowest(samples)), _NONE)
     # on the same grid, so that the cuts of an inclined tool are those of the curve
     grid = few_depths(depths) if model.is_inclined else depths
-    first, last = float(curve.spindle_speed[0]), float(curve.spindle_speed[-1])
+
+    def between(speeds: Array, highest: float, number: int) -> list[LowestLimit]:
+        enough = grid[: 1 + int(np.searchsorted(grid, highest))]
+        finer = method.limits(model, speeds, enough, None, _of_round(progress, number))
+        return [_of(finer, index) for index in range(finer.spindle_speed.size)]
+
+    return lowest_between(samples, between)
+
+
+def lowest_between(samples: Sequence[LowestLimit], between: LimitsBetween) -> LowestLimit:
+    """Lowest limit of samples over rising speeds, and of speeds between them.
+
+    `between` gives limits at speeds, rad/s, up to a depth, m, in a round. See `lowest_limit`.
+    """
+    found = _lowest(samples)
+    if not found or len(samples) < 2:
+        return found[0] if found else _NONE
+    speeds = [one.spindle_speed for one in samples]
+    spacing = float(np.diff(speeds).max())
     for number in range(_ROUNDS):
-        speeds = np.unique(
+        tried = np.unique(
             [
-                np.clip(np.linspace(-spacing, spacing, _BETWEEN) + one.spindle_speed, first, last)
+                np.clip(
+                    np.linspace(-spacing, spacing, _BETWEEN) + one.spindle_speed,
+                    speeds[0],
+                    speeds[-1],
+                )
                 for one in found
             ]
         )
-        enough = grid[: 1 + int(np.searchsorted(grid, found[-1].critical_depth))]
-        finer = method.limits(model, speeds, enough, None, _of_round(progress, number))
-        found = sorted(
-            [*found, *(_of(finer, index) for index in _minima(finer.critical_depth))],
-            key=lambda one: one.critical_depth,
-        )[:_MINIMA]
+        finer = _lowest(between(tried, found[-1].critical_depth, number))
+        found = sorted([*found, *finer], key=_depth)[:_MINIMA]
         spacing *= 2.0 / (_BETWEEN - 1)
     return found[0]
 
@@ -72,11 +93,16 @@ def _of_round(progress: Progress, number: int) -> Progress:
     return lambda done, total: progress(number * total + done, _ROUNDS * total)
 
 
-def _minima(depth: Array) -> list[int]:
+def _lowest(samples: Sequence[LowestLimit]) -> list[LowestLimit]:
     """Samples no higher than their neighbours, the lowest first, some at the most."""
+    depth = np.array([one.critical_depth for one in samples])
     around = np.concatenate([[np.inf], depth, [np.inf]])
     low = np.isfinite(depth) & (depth <= around[:-2]) & (depth <= around[2:])
-    return sorted(np.flatnonzero(low).tolist(), key=lambda index: depth[index])[:_MINIMA]
+    return sorted((samples[index] for index in np.flatnonzero(low)), key=_depth)[:_MINIMA]
+
+
+def _depth(one: LowestLimit) -> float:
+    return one.critical_depth
 
 
 def _of(curve: LimitCurve, index: int) -> LowestLimit:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
+from chatter.description.patchable import Description
 from chatter.description.path import field_at, parse_path
 from chatter.description.quantities import QuantityField
 from chatter.description.toml_document import parse_document, read_text, value_at
@@ -40,6 +42,17 @@ def load_model(path: str | Path) -> Model:
 
         return load_machine(path)
     return Case.from_file(path)
+
+
+def model_or_read(given: Model | str | Path) -> Model:
+    """Return the case or machine that is given, or that of its file; InputError for all else."""
+    if isinstance(given, (str, Path)):
+        return load_model(given)
+    if isinstance(given, Description) and given.NOUN in ("case", "machine"):
+        return given
+    raise InputError(
+        f"a case, a machine or the path of its file is required; {formatted(given)} is given"
+    )
 
 
 def machine_of(model: Model) -> MachineFile | None:

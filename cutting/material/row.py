@@ -48,6 +48,22 @@ class MaterialRow:
             for name in (bare(example), *map(bare, example.split()))
         )
 
+    def is_grade(self, grade: str) -> bool:
+        """Whether a grade is named by the row in full: not by a word of it, such as "steel"."""
+        wanted = designations(grade)
+        return any(
+            bare(name) in wanted
+            for example in self.examples
+            for name in (
+                example,
+                *(word for word in example.split() if any(map(str.isdigit, word))),
+            )
+        )
+
+    def state(self, name: str) -> str:
+        """Return what tells it from other rows of a grade, in lower case: condition and name."""
+        return f"{self.condition} {name}".lower()
+
     def words(self, name: str) -> str:
         """Return all that a search goes through, in lower case."""
         group = f"iso {self.iso_group}" if self.iso_group else ""

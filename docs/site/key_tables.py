@@ -122,6 +122,8 @@ def _rows(schema: dict[str, Any], properties: dict[str, Any], required: list[str
 
 def _sections(schema: dict[str, Any], path: str, name: str, many: bool) -> Iterator[str]:
     section = schema["$defs"][name]
+    # a range is a table or a text
+    section = {**section.get("anyOf", [{}])[0], **section}
     title = f"[[{path}]]" if many else f"[{path}]"
     yield f"## `{title}`\n"
     yield section.get("description", "") + "\n"

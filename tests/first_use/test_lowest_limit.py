@@ -4,6 +4,7 @@ import pytest
 
 import chatter
 from tests.cases import tool_of_922_hertz
+from tests.first_use.shop import cut
 
 
 def test_it_does_not_depend_on_the_count_of_speeds():
@@ -15,3 +16,31 @@ def test_it_does_not_depend_on_the_count_of_speeds():
         assert diagram.lowest.critical_depth <= diagram.limits.critical_depth.min()
         found.append(diagram.lowest.critical_depth)
     assert found[0] == pytest.approx(found[1], rel=2e-4)
+
+
+@pytest.fixture(scope="module")
+def designed():
+    design = {"speeds": "1000..1500 rpm", "count": 4, "depths": "0..4 mm:10"}
+    case = cut(tool__helix="0 deg", tool__teeth=2, pitch_design=design)
+    return chatter.pitch(case)
+
+
+def test_the_lowest_limit_of_pitch_angles_is_that_of_speeds_between_too(designed):
+    """It was the least of samples, and was only said to be."""
+    for one, case in ((designed.best, designed.best_case), (designed.original, designed.case)):
+        fine = {"from": "1000 rpm", "to": "1500 rpm", "count": 801}
+        limits = chatter.lobes(case.patch({"lobes.speeds": fine}), "collocation").limits
+        least = float(limits.critical_depth.min())
+        assert one.lowest_limit <= float(one.limits.min())
+        assert one.lowest_limit == pytest.approx(least, rel=2e-3)
+
+
+def test_pitch_angles_say_below_which_depth_any_speed_is_stable(designed):
+    told = designed.sentences()
+    assert any(line.startswith("stable at any of these speeds below") for line in told)
+    assert "at 16 speeds" not in " ".join(told)
+    # as `lobes` of the same tool says it
+    speeds = {"lobes.speeds": "1000..1500 rpm:200"}
+    diagram = chatter.lobes(designed.best_case.patch(speeds), "collocation")
+    assert designed.best.stable_below == pytest.approx(diagram.lowest_depth, rel=5e-3)
+    assert designed.best.stable_below < designed.best.lowest_limit

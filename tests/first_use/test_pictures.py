@@ -18,9 +18,10 @@ from chatter.plots.frf import plot_frf
 from chatter.plots.optimum import _kept as _kept_of_an_optimum
 from chatter.plots.pitch_design import draw_limits
 from chatter.plots.stability_diagram import _between, _draw_across_jumps, _kept, plot_limits
-from chatter.plots.uncertainty import draw_distribution
+from chatter.plots.uncertainty import _to_the_top, draw_distribution
 from chatter.studies.bifurcation import BifurcationDiagram, BifurcationPoint
 from chatter.studies.diagram_over_axes import lobes_over
+from chatter.studies.pitch_design.pitch_search import Design
 from tests.first_use.shop import cut
 
 
@@ -189,9 +190,7 @@ def test_the_depth_of_the_cut_is_written_within_the_axes_of_the_distribution():
 def test_lowest_limits_of_a_pitch_design_stand_beside_the_curves():
     """ "3.74 mm" was written across the curve."""
     speeds = from_rpm(np.linspace(4500.0, 6500.0, 5))
-    designs = [
-        SimpleNamespace(limits=np.full(5, depth), pitch=(90.0,) * 4) for depth in (1.4e-3, 3.7e-3)
-    ]
+    designs = [Design("even", (90.0,) * 4, np.full(5, depth), 0.0) for depth in (1.4e-3, 3.7e-3)]
     found = SimpleNamespace(speeds=speeds, original=designs[0], best=designs[1], max_depth=9e-3)
     figure = Figure(layout="constrained")
     axes = figure.subplots()
@@ -206,3 +205,62 @@ def test_the_legend_of_an_optimum_is_no_wider_than_its_axes():
     """A quarter of the picture was empty beside it."""
     limits = SimpleNamespace(depth_margin=0.0, speed_margin=0.0, confidence=0.95)
     assert len(_kept_of_an_optimum(limits)) <= 52
+
+
+def hatched(axes, x, y):
+    """Whether a point, in units of the axes, lies in what is hatched."""
+    return any(
+        path.contains_point((x, y))
+        for collection in axes.collections
+        if collection.get_hatch()
+        for path in collection.get_paths()
+    )
+
+
+def is_near_an_end(found, depth):
+    """Whether a depth, mm, is at a limit or at the end of what of it is not certain."""
+    shares = [0.0, *(sign * one.share for one in found.neglected for sign in (1.0, -1.0))]
+    ends = [1e3 * limit * (1.0 + share) for limit in found.limit.crossings[0] for share in shares]
+    return min((abs(depth - end) for end in ends), default=1.0) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("values", "depths"),
+    [
+        # edge forces at limits, and at speeds that have none
+        ({}, (0.3, 0.75, 0.9, 1.0, 1.1, 3.0)),
+        ({"tool__flute_length": "1.2 mm"}, (0.3, 1.0, 1.15)),
+        # edge forces stiffer than the chip: nothing is certain
+        ({"material__Kte": "400 N/mm", "material__Kre": "700 N/mm"}, (0.2, 1.1)),
+    ],
+)
+def test_hatching_says_what_check_says(values, depths):
+    """A share was hatched off the end of the axis where no limit is: a stable cut lay in it."""
+    case = cut(lobes__method="collocation", **values)
+    feed = {"cut.cutting_speed": None, "cut.feed_rate": None}
+    feed["cut.feed_per_tooth"] = case.cut.feed_per_tooth
+    axes = plot_limits(chatter.lobes(case)).axes[0]
+    for speed in (1194, 1250, 1800):
+        for depth in depths:
+            there = {"cut.spindle_speed": f"{speed} rpm", "cut.axial_depth": f"{depth} mm"}
+            found = chatter.check(case.patch({**feed, **there}))
+            if depth < axes.get_ylim()[1] and not is_near_an_end(found, depth):
+                assert hatched(axes, speed, depth) == (found.verdict == "not certain"), there
+
+
+def test_nothing_is_hatched_where_no_limit_is_found():
+    stiff = {f"structure__mode[{k}]__stiffness": "400 N/um" for k in (0, 1)}
+    case = cut(tool__flute_length="1 mm", **stiff)
+    axes = plot_limits(chatter.lobes(case)).axes[0]
+    assert chatter.check(case).verdict == "stable"
+    assert not any(hatched(axes, 1194.0, depth) for depth in (0.3, 0.5, 0.95))
+
+
+def test_the_band_of_an_uncertain_limit_follows_its_lobes():
+    """Thirty-one speeds made teeth of lobes; curves ended short of the top."""
+    found = chatter.uncertainty(cut(material__Ktc="1900 +- 100 MPa"), 4)
+    assert found.speeds.size > 100
+    stop = _to_the_top(np.array([1.0, 2.0, np.inf, np.inf, 3.0, 4.0, np.inf]), 5.0)
+    assert stop == pytest.approx([1.0, 2.0, 5.1, 5.1, 3.0, 4.0, 5.1])
+    lone = _to_the_top(np.array([1.0, np.inf, np.inf, np.inf, 3.0]), 5.0)
+    assert np.isnan(lone[2])

@@ -65,6 +65,13 @@ def test_what_is_neither_a_case_nor_a_path_is_named():
     """It was "'int' object has no attribute 'lobes'"."""
     with pytest.raises(InputError, match="a case or the path of its file is required; 3 is given"):
         chatter.check(3)
+    wanted = "a machine or the path of its file is required; "
+    with pytest.raises(InputError, match=wanted + "3 is given"):
+        chatter.frf(3)
+    with pytest.raises(InputError, match=wanted + "<Case 'case': Shop> is given"):
+        chatter.mode_shapes(cut())
+    with pytest.raises(InputError, match="a case, a machine or the path of its file is required"):
+        chatter.whatif(3, {"cut.axial_depth": ["1 mm"]})
 
 
 def test_bifurcation_of_python_takes_a_range():
@@ -321,3 +328,23 @@ def test_two_speeds_in_one_command_are_refused(tmp_path):
     told = chatter_command("check", written(tmp_path), *both)
     assert told.exit_code == 2
     assert "cut.spindle_speed is given as well; give one of the two" in told.stderr
+
+
+def test_cuts_of_an_optimum_and_of_a_sheet_have_short_reprs():
+    case = cut(optimum={"depths": "0.2..1 mm:4", "speeds": "1100..1300 rpm"})
+    best = chatter.optimum(case).candidates[0]
+    assert repr(best).startswith("<Candidate ")
+    assert f"{6e7 * best.removal_rate:.4g} cm" in repr(best)
+    (one,) = chatter.sheet([cut()]).cases
+    assert len(repr(one)) < 80
+    assert repr(one.cuts[0]) == "<SheetCut as stated: 0.5 mm at 1193.66 rpm, stable>"
+    assert max(len(repr(part)) for part in (best, *one.cuts)) < 120
+
+
+def test_a_bound_is_told_only_where_it_differs():
+    """Without edge forces the limit and what is certain of it were told in two sentences alike."""
+    widths = ["cut.radial_depth=4 mm,8 mm"]
+    plain = cut(material__Kte=None, material__Kre=None)
+    assert "certain" not in " ".join(chatter.whatif(plain, widths, "critical depth").sentences())
+    told = " ".join(chatter.whatif(cut(), widths, "critical depth").sentences())
+    assert "depth stable for certain" in told

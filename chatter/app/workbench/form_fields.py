@@ -76,10 +76,16 @@ def _resolved(schema: Mapping[str, Any], one: Mapping[str, Any]) -> Mapping[str,
     return schema["$defs"][name] if name else one
 
 
+def _as_table(rules: Mapping[str, Any], content: Any) -> Mapping[str, Any]:
+    """Rules of the table that a range may be, where it is not stated as text."""
+    tables = [one for one in rules.get("anyOf", ()) if one.get("type") == _OBJECT]
+    return tables[0] if tables and not isinstance(content, str) else rules
+
+
 def _fields(
     schema: Mapping[str, Any], one: Mapping[str, Any], path: str, content: Any
 ) -> Iterator[FormField]:
-    rules = _resolved(schema, one)
+    rules = _as_table(_resolved(schema, one), content)
     if rules.get("type") == "array" and "$ref" in rules.get("items", {}):
         for place, entry in enumerate(content or ()):
             yield from _fields(schema, rules["items"], f"{path}[{place}]", entry)

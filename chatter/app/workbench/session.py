@@ -13,6 +13,7 @@ import tomlkit
 from chatter.description.case import Case, load, loads
 from chatter.description.errors import InputError
 from chatter.description.path import parse_path
+from chatter.description.stated_range import open_stated_ranges
 from chatter.description.toml_editing import set_value
 from chatter.io.formats.format_list import FORMATS
 
@@ -154,7 +155,9 @@ class Session:
         except tomlkit.exceptions.ParseError as error:
             raise InputError(f"{self.name}: {error}; mend the text first") from None
         for path, value in values:
-            set_value(document, parse_path(path), value, Case.LAYOUT)
+            steps = parse_path(path)
+            open_stated_ranges(Case, document, steps)
+            set_value(document, steps, value, Case.LAYOUT)
         self.set_text(tomlkit.dumps(document))
 
     def set_modes(self, modes: Sequence[Mapping[str, Any]]) -> None:

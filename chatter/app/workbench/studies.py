@@ -97,7 +97,7 @@ STUDIES = {
     "uncertainty": Study(
         "Uncertainty",
         'what values such as "1650 +- 80 MPa" make of the limits',
-        {"count": 200, "seed": 1, "speeds": 31},
+        {"count": 200, "seed": 1, "speeds": 121},
         _uncertainty,
     ),
 }  # fmt: skip

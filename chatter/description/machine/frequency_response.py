@@ -7,7 +7,7 @@ from typing import Annotated, Literal, NamedTuple
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from chatter.description.quantities import either_quantity, quantities, quantity, whole_number
+from chatter.description.quantities import either_quantity, ends_of_range, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from dynamics.machine.description import Condition
 
@@ -77,7 +77,7 @@ class FrfSection(StateSection):
     level: either_quantity("force", "torque", above=0.0) = Field(
         100.0, description="peak of the force or torque"
     )
-    band: quantities(2, "frequency", above=0.0)
+    band: ends_of_range("frequency", above=0.0)
     lines: whole_number(10, 1_000_000, "numbers of lines") = Field(
         2000, description="of the linearised response"
     )

@@ -11,7 +11,7 @@ from chatter.description.errors import InputError
 from chatter.description.file_name import FileName, in_case_folder
 from chatter.description.formatting import formatted
 from chatter.description.law_section import FORCE_LAWS, LawSection, law_section
-from chatter.description.material_table import read_material_table, row_named
+from chatter.description.material_table import name_of_row, read_material_table, row_named
 from chatter.description.quantities import quantity
 from chatter.description.section import SectionError
 from cutting.force.law import ForceLaw
@@ -31,9 +31,14 @@ class Material(_Keys):
 
     name: str | None = Field(
         None,
-        description="row of the table of materials (`chatter materials` lists it), or of `table`; "
-        "coefficients given beside it override its own",
+        description="row of the table of materials (`chatter materials` lists it), or of `table`, "
+        "or a grade of one; coefficients given beside it override its own",
         examples=list(MATERIALS)[:3],
+    )
+    condition: str | None = Field(
+        None,
+        description="chooses among the rows of a grade: words of their condition or name",
+        examples=["annealed", "quenched and tempered, 850 MPa"],
     )
     table: FileName | None = Field(None, description="file with a table of materials of your own")
 
@@ -53,8 +58,16 @@ class Material(_Keys):
         """Row of the table that the section names; None where it names none."""
         if self.name is None:
             return None
-        rows = MATERIALS if self.table is None else read_material_table(self.table)
-        return rows.get(self.name)
+        return self._rows[self.row_name]
+
+    @property
+    def row_name(self) -> str:
+        """Name of the row that the section names, by it or by a grade; empty where by none."""
+        return "" if self.name is None else name_of_row(self.name, self._rows, self.condition)
+
+    @property
+    def _rows(self) -> Mapping[str, MaterialRow]:
+        return MATERIALS if self.table is None else read_material_table(self.table)
 
     def force_law(self, helix: float) -> ForceLaw:
         """Force law of an edge inclined by the helix, rad."""
@@ -68,21 +81,25 @@ def _row_of(data: Any, info: ValidationInfo) -> MaterialRow | None:
     name, table = data.get("name"), data.get("table")
     if table is not None and name is None:
         raise SectionError([("table", "is given without name, the row that is meant")])
-    if not isinstance(name, str):
+    condition = data.get("condition")
+    if condition is not None and name is None:
+        raise SectionError([("condition", "is given without name, the grade that is meant")])
+    if not isinstance(name, str) or not isinstance(condition, (str, type(None))):
         return None
     if table is None:
-        return _named(name, MATERIALS)
+        return _named(name, MATERIALS, condition)
     try:
         rows = read_material_table(in_case_folder(table, info))
     except ValueError as error:
         raise SectionError([("table", str(error))]) from None
     except InputError as error:
         raise SectionError([("table", text) for text in error.messages]) from None
-    return _named(name, rows)
+    return _named(name, rows, condition)
 
 
-def _named(name: str, rows: Mapping[str, MaterialRow]) -> MaterialRow:
+def _named(name: str, rows: Mapping[str, MaterialRow], condition: str | None) -> MaterialRow:
     try:
-        return row_named(name, rows)
+        return row_named(name, rows, condition)
     except ValueError as error:
-        raise SectionError([("name", str(error))]) from None
+        key = "name" if condition is None else "condition"
+        raise SectionError([(key, str(error))]) from None

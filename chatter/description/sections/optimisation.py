@@ -1,6 +1,6 @@
 """[optimum] and [pitch_design]: what a search may change, and what it must keep within."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,6 +17,7 @@ Values = whole_number(2, _MOST_VALUES, "counts")
 class AxialDepths(Range):
     """Axial depths that may be chosen."""
 
+    EXAMPLE: ClassVar[str] = "1..5 mm:60"
     from_: PositiveLength | None = Field(None, alias="from")
     count: Values = Field(60, description="depths of the coarse grid")
 
@@ -24,12 +25,14 @@ class AxialDepths(Range):
 class RadialDepths(Range):
     """Radial depths that may be chosen."""
 
+    EXAMPLE: ClassVar[str] = "1..8 mm:8"
     count: Values = Field(8, description="radial depths of the coarse grid")
 
 
 class Feeds(Range):
     """Feeds per tooth that may be chosen."""
 
+    EXAMPLE: ClassVar[str] = "0.05..0.2 mm:4"
     from_: quantity("length", above=0.0, at_most=LARGEST_FEED) = Field(alias="from")
     to: quantity("length", above=0.0, at_most=LARGEST_FEED)
     count: Values = Field(4, description="feeds of the coarse grid")

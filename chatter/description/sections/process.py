@@ -18,6 +18,7 @@ from chatter.description.quantities import (
 )
 from chatter.description.section import Section, raise_if_any
 from chatter.description.sections.program import Program
+from chatter.description.stated_range import StatedRange
 from chatter.description.units import rpm
 
 if TYPE_CHECKING:
@@ -335,11 +336,12 @@ class Simulation(Section):
 Count = whole_number(2, MOST_POINTS_A_SIDE, "counts")
 
 
-class Range(Section):
+class Range(StatedRange):
     """Values from one to another; lengths, unless a class says otherwise."""
 
     #: unit of messages, and a value in it over SI
     UNIT: ClassVar[tuple[str, float]] = ("mm", 1e3)
+    EXAMPLE: ClassVar[str] = "1..5 mm"
     from_: PositiveLength = Field(alias="from")
     to: PositiveLength
 
@@ -357,6 +359,7 @@ class SpeedBand(Range):
     """Spindle speeds that may be chosen."""
 
     UNIT: ClassVar[tuple[str, float]] = ("rpm", rpm(1.0))
+    EXAMPLE: ClassVar[str] = "3000..9000 rpm"
     from_: quantity("angular_speed", above=0.0) = Field(alias="from")
     to: quantity("angular_speed", above=0.0)
 
@@ -364,12 +367,14 @@ class SpeedBand(Range):
 class SpeedRange(SpeedBand):
     """Spindle speeds of the diagram."""
 
+    EXAMPLE: ClassVar[str] = "3000..9000 rpm:200"
     count: Count = 400
 
 
-class DepthRange(Section):
+class DepthRange(StatedRange):
     """Axial depths of the diagram."""
 
+    EXAMPLE: ClassVar[str] = "0..5 mm:50"
     to: PositiveLength
     count: Count = 100
 

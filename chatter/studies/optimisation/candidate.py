@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
+from chatter.description.units import rpm
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.operating_point import OperatingPoint, model_with, rounded
@@ -55,7 +56,7 @@ class Verification:
     verified: bool  # stable, and every limit held within the tolerance of the comparison
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Candidate:
     """A cut that keeps all limits, SI."""
 
@@ -73,6 +74,16 @@ class Candidate:
     active: tuple[str, ...]
     probability: Probability | None = None  # None where nothing is uncertain
     verification: Verification | None = None  # None where it was not simulated
+
+    def __repr__(self) -> str:
+        """The cut, in units of the shop: what it uses of each limit would fill the screen."""
+        speed, *lengths = self.point[:4]
+        depth, width, feed = (1e3 * length for length in lengths)
+        return (
+            f"<Candidate {rpm(speed):.6g} rpm, {depth:.4g} mm deep, {width:.4g} mm wide, "
+            f"{feed:.4g} mm a tooth, "
+            f"{6e7 * self.removal_rate:.4g} cm³/min>"
+        )
 
     @property
     def removal_rate(self) -> float:

@@ -15,10 +15,14 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.sections.optimisation import PitchDesign
+from chatter.stability.forced_vibration import neglected_edge_forces, neglected_in_steady_cut
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.collocation_method import COLLOCATION
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.neglected_effects import lowest_factor, notes_of
+from chatter.stability.resting_friction import limits_with_resting_friction
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import fingerprint
 from chatter.studies.pitch_design.families import families
@@ -112,17 +116,30 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
         chatter_frequency=frequency / (2.0 * math.pi),
         design_speed=middle,
         speeds=fine,
-        notes=model.notes,
+        notes=(*model.notes, *_notes_on_best(search, ranked[0])),
     )
 
 
 def _ranked_on(search: PitchSearch, designs: Sequence[Design], speeds: Array) -> tuple[Design, ...]:
-    """Designs with their limits at finer speeds, best first: what fell between speeds counts."""
-    finer = []
-    for one in designs:
-        limits = search.limits(one.pitch, speeds)
-        finer.append(replace(one, limits=limits, score=search.goal(speeds, limits)))
-    return tuple(sorted(finer, key=lambda one: -one.score))
+    """Designs with their limits at and between finer speeds, best first."""
+    finer = [search.refined(one, speeds) for one in designs]
+    certain = [replace(one, kept=_kept(search.model_of(one.pitch), one)) for one in finer]
+    return tuple(sorted(certain, key=lambda one: -one.score))
+
+
+def _notes_on_best(search: PitchSearch, best: Design) -> tuple[str, ...]:
+    """Say what the limits of the best design leave out in the cut of the case."""
+    found = neglected_in_steady_cut(search.model_of(best.pitch), COLLOCATION, best.limits)
+    return notes_of(found)
+
+
+def _kept(model: MillingModel, design: Design) -> float:
+    """Factor of the lowest limit of a design that edge forces and resting frictions leave."""
+    at_rest = limits_with_resting_friction(model, zero_order_of(model, spindle_speeds(model.case)))
+    effects = neglected_edge_forces(
+        model, model.case.cut.axial_depth, np.array([design.lowest_limit])
+    )
+    return at_rest.of_lowest * lowest_factor(effects)
 
 
 def _speeds(case: Case, section: PitchDesign) -> tuple[Array, Array]:

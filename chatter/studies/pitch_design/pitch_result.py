@@ -10,6 +10,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
+from chatter.description.formatting import rounded_down
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text
 from chatter.studies.pitch_design.families import regeneration
@@ -119,6 +120,7 @@ class PitchResult(SavedResult):
             "name": one.name,
             "pitch_deg": list(one.pitch),
             "lowest_limit_mm": one.lowest_limit * 1e3,
+            "stable_below_mm": one.stable_below * 1e3,
             "mean_limit_mm": float(one.limits.mean()) * 1e3,
             "max_pitch_ratio": one.max_pitch_ratio,
             "regeneration_left": regeneration(np.radians(one.pitch), self.design_speed, frequency),
@@ -128,15 +130,29 @@ class PitchResult(SavedResult):
         """Sentences for the terminal."""
         low, high = rpm(self.speeds[[0, -1]])
         angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
-        before, after = self.original.lowest_limit * 1e3, self.best.lowest_limit * 1e3
         lines = [
-            f"pitch {angles} deg: lowest limit at {len(self.speeds)} speeds from {low:.0f} to "
-            f"{high:.0f} rpm {after:.4g} mm, with that of the case {before:.4g} mm",
+            f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
+            f"{self._lowest(self.best)}, with that of the case {self._lowest(self.original)}",
+            f"stable at any of these speeds {_below(self.best)}, with that of the case "
+            f"{_below(self.original)}{self._taken_off()}",
             f"largest pitch ratio {self.best.max_pitch_ratio:.3g} of the mean",
         ]
         if not self.is_better:
             lines.append("no pitch within the bounds is better than that of the case")
         return lines
+
+    def _lowest(self, one: Design) -> str:
+        """Lowest limit of a design in words."""
+        if one.lowest_limit >= self.max_depth:
+            return f"none up to {self.max_depth * 1e3:.4g} mm"
+        return f"{one.lowest_limit * 1e3:.4g} mm"
+
+    def _taken_off(self) -> str:
+        """What of the lowest limits is not certain."""
+        if min(self.best.kept, self.original.kept) >= 1.0:
+            return ""
+        shares = " and ".join(f"{1.0 - one.kept:.0%}" for one in (self.best, self.original))
+        return f" (less {shares}: edge forces that set in at a chip of zero, frictions at rest)"
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
@@ -155,6 +171,7 @@ class PitchResult(SavedResult):
                 "name": ([one.name for one in found], ""),
                 "pitch [deg]": (angles, ""),
                 "lowest_limit [mm]": ([one.lowest_limit * 1e3 for one in found], ".6g"),
+                "stable_below [mm]": ([one.stable_below * 1e3 for one in found], ".6g"),
                 "mean_limit [mm]": ([one.limits.mean() * 1e3 for one in found], ".6g"),
                 "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
             }
@@ -167,3 +184,9 @@ class PitchResult(SavedResult):
             }
         )
         return {"pitch.csv": designs, "lobes.csv": limits}
+
+
+def _below(one: Design) -> str:
+    """Depth below which a design is stable at any of the speeds, in words."""
+    depth = one.stable_below * 1e3
+    return f"below {rounded_down(depth)} mm" if depth > 0.0 else "at no depth for certain"

@@ -3,15 +3,16 @@
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
+from chatter.stability.lowest_limit import LowestLimit, lowest_between
 from chatter.stability.methods.collocation.element_cut import element_cut
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.pockets import DEPTH_MARGIN, lowest_within_margin
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import Family
@@ -38,11 +39,19 @@ class Design(BriefRepr):
     pitch: tuple[float, ...]  # deg, multiples of 0.1
     limits: Array  # first limit at every speed, m; the end of the search where none was found (n,)
     score: float  # what the goal makes of them
+    lowest_speed: float = math.nan  # of the lowest limit, where it was sought between the speeds
+    lowest_between: float = math.inf  # that limit, m
+    kept: float = 1.0  # factor of it that edge forces and frictions at rest leave at least
 
     @property
     def lowest_limit(self) -> float:
-        """Lowest limit over all speeds, m."""
-        return float(self.limits.min())
+        """Lowest limit over all speeds, m, between them too where it was sought there."""
+        return min(float(self.limits.min()), self.lowest_between)
+
+    @property
+    def stable_below(self) -> float:
+        """Depth, m, below which any of the speeds is stable for certain."""
+        return self.kept * self.lowest_limit
 
     @property
     def max_pitch_ratio(self) -> float:
@@ -101,12 +110,41 @@ class PitchSearch:
         self.teeth, self._cache = case.tool.teeth, cache
         self._known: dict[tuple[float, ...], Array] = {}
 
+    def refined(self, one: Design, speeds: Array) -> Design:
+        """Design with limits at other speeds (n,), and the lowest of them and between them."""
+        limits = self.limits(one.pitch, speeds)
+        samples = [
+            LowestLimit(*pair, math.nan)
+            for pair in zip(speeds.tolist(), limits.tolist(), strict=True)
+        ]
+
+        def between(tried: Array, highest: float, number: int) -> list[LowestLimit]:
+            del highest, number
+            found = self.limits(one.pitch, tried).tolist()
+            return [LowestLimit(*pair, math.nan) for pair in zip(tried, found, strict=True)]
+
+        lowest = lowest_between(samples, between)
+        place = int(np.searchsorted(speeds, lowest.spindle_speed))
+        score = self.goal(
+            np.insert(speeds, place, lowest.spindle_speed),
+            np.insert(limits, place, lowest.critical_depth),
+        )
+        return replace(
+            one, limits=limits, score=score, lowest_speed=float(lowest.spindle_speed),
+            lowest_between=float(lowest.critical_depth),
+        )  # fmt: skip
+
+    def model_of(self, pitch: Sequence[float]) -> MillingModel:
+        """Model of the case with pitch angles in deg."""
+        angles = [f"{angle:.6g} deg" for angle in pitch]
+        return milling_model(self.case.patch({"tool.pitch": angles}))
+
     def limits(self, pitch: Sequence[float], speeds: Array) -> Array:
         """First limits at speeds (n,), m, of pitch angles in deg."""
         angles = [f"{angle:.6g} deg" for angle in pitch]
 
         def compute() -> list[float]:
-            model = milling_model(self.case.patch({"tool.pitch": angles}))
+            model = self.model_of(pitch)
             max_depth = float(self.depths[-1])
             found = first_limits(element_cut(model, max_depth), speeds, self.depths)
             return np.minimum(found, max_depth).tolist()

@@ -56,6 +56,7 @@ class Quantity:
     unit: str
     beyond: str = ""  # number that it lies above where it is None
     at_zero: str = ""  # what is said in the place of 0
+    bounds: str = ""  # number that it is a bound of, beside which it is said only where it differs
 
 
 @dataclass(frozen=True)
@@ -264,12 +265,14 @@ _CERTAIN = Quantity(
     "mm",
     beyond="max_axial_depth_mm",
     at_zero="not known",
+    bounds="critical_depth_mm",
 )
 _CERTAIN_ANYWHERE = Quantity(
     "depth stable for certain at any of the speeds",
     "mm",
     beyond="max_axial_depth_mm",
     at_zero="not known",
+    bounds="lowest_limit_mm",
 )
 _LOWEST = Quantity("lowest critical depth over speed", "mm", beyond="max_axial_depth_mm")
 _CHATTER_FREQUENCY = Quantity("chatter frequency", "Hz")

@@ -233,7 +233,8 @@ def _changed_quantities(study: WhatIf, before: Outcome, after: Outcome) -> Mappi
     chosen = {study.quantity: study.measure.quantities[study.quantity]}
     for key, quantity in study.measure.quantities.items():
         pair = before.numbers.get(key), after.numbers.get(key)
-        if key != study.quantity and _is_notable(*pair):
+        bounded = before.numbers.get(quantity.bounds), after.numbers.get(quantity.bounds)
+        if key != study.quantity and pair != bounded and _is_notable(*pair):
             chosen[key] = quantity
     return chosen
 

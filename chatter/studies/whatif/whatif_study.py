@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
 from chatter.io.result_files import SavedResult, csv_of_rows
-from chatter.studies.model import fingerprint, load_model, patched
+from chatter.studies.model import fingerprint, model_or_read, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
 from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
@@ -156,8 +156,7 @@ def whatif(
     RunError
         If every run fails, or the study is interrupted; finished points are in the folder.
     """
-    if isinstance(model, (str, Path)):
-        model = load_model(model)
+    model = model_or_read(model)
     variations = _variations(model, vary, count)
     layout = chosen_layout(variations, tornado)
     measure = measure_of(result, model)

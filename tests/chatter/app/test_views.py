@@ -37,7 +37,7 @@ ANSWERS = {
 def workbench(tmp_path):
     text = (EXAMPLES / "two-degrees-of-freedom" / "case.toml").read_text()
     # few speeds, so that studies are quick
-    (tmp_path / "case.toml").write_text(text.replace("count = 400", "count = 60"))
+    (tmp_path / "case.toml").write_text(text.replace(":400", ":60"))
     page = Workbench(tmp_path)
     yield page
     page.end()

@@ -134,7 +134,7 @@ def test_the_good_case_is_good():
         ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; it is "down" here; allowed are "up", "down", "slot" or "face"'),
         # types
         ('title = "good"', "title = 3", "title: 3 is given, text in quotes is required"),
-        ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is given, a table is required'),
+        ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is no range with units; FROM..TO:COUNT is required, such as "0..5 mm:50"'),
         ("0.03", "2020-01-01", "structure.mode[0].damping: 2020-01-01 is not a quantity; a plain number is required, such as 0.03"),
         ('"2 mm"', "{ value = 2 }", 'cut.axial_depth: a table is not a quantity; a length is required, such as "2 mm"'),
         ("[[structure.mode]]", "[structure.mode]", "structure.mode: a table is given, a list is required; write [[structure.mode]], not [structure.mode]"),

@@ -4,12 +4,13 @@ import pytest
 
 from chatter.description.case import load, loads
 from chatter.description.errors import InputError
-from chatter.description.material_table import read_material_table, row_named
+from chatter.description.material_table import name_of_row, read_material_table, row_named
 from chatter.description.material_words import (
     coefficients_in_words,
     notes_on_material,
     thickest_chip,
 )
+from cutting.material.table import MATERIALS
 
 OWN = """
 ["our steel"]
@@ -156,7 +157,50 @@ def test_a_grade_is_answered_by_the_rows_of_its_conditions(grade, rows):
     assert all(row in str(found.value) for row in rows)
 
 
-@pytest.mark.parametrize("grade", ["316L", "AISI 316 L", "inconel 718"])
-def test_a_grade_of_one_row_is_answered_by_it(grade):
-    with pytest.raises(ValueError, match=r"did you mean \"(stainless|nickel)"):
-        row_named(grade)
+@pytest.mark.parametrize(
+    ("grade", "group"), [("316L", "VDI 14"), ("AISI 316 L", "VDI 14"), ("inconel 718", "VDI 34")]
+)
+def test_a_grade_of_one_row_is_that_row(grade, group):
+    assert group in name_of_row(grade)
+
+
+@pytest.mark.parametrize("word", ["steel", "silicon", "grade", "alloy"])
+def test_a_word_of_many_grades_is_none(word):
+    with pytest.raises(ValueError, match="is not in the table of materials"):
+        row_named(word)
+
+
+@pytest.mark.parametrize(
+    ("condition", "group"),
+    [("annealed", "(VDI 2)"), ("850 MPa", "(VDI 3)"), ("Quenched and tempered", "(VDI 3)")],
+)
+def test_a_condition_chooses_among_the_rows_of_a_grade(condition, group):
+    """1.0503 annealed or tempered had to be named by the whole name of its row."""
+    found = loads(f'[material]\nname = "1.0503"\ncondition = "{condition}"').material
+    assert group in found.row_name
+    assert found.row is MATERIALS[found.row_name]
+    assert found.Ktc == MATERIALS[found.row_name].values["Ktc"]
+
+
+@pytest.mark.parametrize(
+    ("grade", "condition", "told"),
+    [
+        (
+            "42CrMo4",
+            "quenched",
+            'leaves 3 of the rows of "42CrMo4": "quenched and tempered, 930 MPa',
+        ),
+        ("42CrMo4", "annealed", 'chooses none of the rows of "42CrMo4"'),
+        ("ti6al4v", "1050 MPa", "leaves 2"),
+        ("unobtainium", "annealed", "is not in the table of materials"),
+    ],
+)
+def test_a_condition_that_does_not_choose_says_which_do(grade, condition, told):
+    with pytest.raises(InputError) as found:
+        loads(f'[material]\nname = "{grade}"\ncondition = "{condition}"')
+    assert told in str(found.value)
+
+
+def test_a_condition_without_a_grade_is_refused():
+    with pytest.raises(InputError, match="is given without name"):
+        loads('[material]\ncondition = "annealed"\nKtc = "1 GPa"\nKrc = "1 GPa"')
