@@ -52,6 +52,7 @@ distributions: $(VENV)/.installed-dev
 	$(BIN)/python -m build
 
 benchmarks: $(VENV)/.installed-dev
+	$(BIN)/python -m benchmarks
 	$(BIN)/python benchmarks/run.py
 
 $(VENV)/.python:

@@ -121,7 +121,7 @@ def against_points():
 
 def operations(cut, nodes, krylov):
     """Floating-point operations of a point: response, factors, iteration, orthogonalisation."""
-    modes, rank = cut.shape.shape
+    modes, rank = cut.arrays.shape.shape
     p = cut.points.weight.shape[0]
     elements, q, size = nodes / p, p * rank, 2 * modes
     terms = cut.response.coefficient.shape[1]

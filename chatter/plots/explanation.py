@@ -106,7 +106,7 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
     legends = [axes.get_legend_handles_labels() for axes in panels.ravel()]
     figure.legend(
         *max(legends, key=lambda one: len(one[1])),
-        loc="outside upper right",
+        loc="outside lower center",
         ncols=4,
         fontsize=8.0,
         frameon=False,

@@ -59,9 +59,9 @@ def plot_frf(result: FrfResult) -> Figure:
     if incoherent:
         axes[2].set(ylabel="coherence", ylim=(0.0, 1.05))
     axes[-1].set(xlabel="frequency [Hz]", xlim=_band(result))
-    # beside the curves: within the panel there is one everywhere
+    # below the panels: there are curves everywhere in them, and the title is above
     figure.legend(
-        *axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=3, fontsize=8.0,
+        *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8.0,
         frameon=False,
     )  # fmt: skip
     for each in axes:

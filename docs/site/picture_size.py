@@ -7,7 +7,7 @@ from pathlib import Path
 from PIL import Image
 
 _WIDEST = 1100  # pixels
-_COLOURS = 64
+_COLOURS = 256
 
 
 def keep(source: Path, target: Path) -> None:

@@ -1,7 +1,7 @@
 """Run examples for the gallery: ``python docs/site/run_examples.py [NAME ...]``.
 
-Keeps a picture of each and the processor time it took with kernels in the cache; each runs in a
-process of its own, with a limit on its time.
+Keeps a picture of each, those that other pages show, and the processor time it took with kernels in
+the cache; each runs in a process of its own, with a limit on its time.
 """
 
 from __future__ import annotations
@@ -21,6 +21,20 @@ import picture_size  # noqa: E402
 
 RUN_TIMES = DOCS / "site" / "run-times.json"
 GALLERY = DOCS / "pictures" / "gallery"
+PICTURES = GALLERY.parent
+#: of an example, files of its results and what the pages call them
+ON_PAGES = {
+    "chattering-cut": {
+        "3-mm/simulate.png": "chattering-cut.png",
+        "bifurcation/bifurcation.png": "bifurcation.png",
+    },
+    "face-mill-chatter": {
+        "face-mill-entry.png": "face-mill-entry.png",
+        "face-mill-onsets.png": "face-mill-onsets.png",
+    },
+    "flexible-workpiece": {"lobes.png": "flexible-workpiece.png"},
+    "machine-coupled-milling": {"responses.png": "machine-responses.png"},
+}
 #: s after which an example is ended, and stands in the gallery without a picture
 _LONGEST = 1500.0
 
@@ -41,6 +55,8 @@ def refresh(name: str) -> float:
         drawn = sorted(out.rglob("*.png"), key=lambda path: path.stat().st_mtime)
         if drawn:
             picture_size.keep(drawn[0], GALLERY / f"{name}.png")
+        for found, shown in ON_PAGES.get(name, {}).items():
+            picture_size.keep(out / found, PICTURES / shown)
     return taken
 
 

@@ -41,13 +41,13 @@ def amplitude_reached(case: Case, depth: float) -> float:
 
 
 def plot_limits(
-    limits: NDArray, reached: dict[float, float], at_rest: float, without: float
+    limits: NDArray, reached: dict[float, float], stuck: float, without: float
 ) -> Figure:
     """Limit depth over amplitude, and where cuts settle."""
     figure = style.new_figure(8.0, 5.0)
     axes = figure.subplots()
     axes.semilogx(AMPLITUDES, limits, color=style.BLUE, label="lobes, describing function")
-    axes.axhline(at_rest, color=style.GREY, lw=0.8, ls="--", label="lobes, friction at rest")
+    axes.axhline(stuck, color=style.GREY, lw=0.8, ls="--", label="lobes, friction stuck")
     axes.axhline(without, color=style.GREY, lw=0.8, ls=":", label="lobes, no friction")
     held = {depth: one for depth, one in reached.items() if depth <= HELD}
     lost = {depth: one for depth, one in reached.items() if depth > HELD}
@@ -71,16 +71,15 @@ def main(out: Path) -> list[Path]:
     """Compare limits at amplitudes with the amplitudes at which cuts settle."""
     case = chatter.load(HERE / "case.toml")
     speed = np.array([case.cut.spindle_speed])
-    at_rest, without = (
-        float(zero_order_of(milling_model(one), speed).critical_depth[0] * 1e3)
-        for one in (case, case.patch({"structure.friction": False}))
-    )
+    stuck = limit_at(case, 0.0)
+    slides = milling_model(case.patch({"structure.friction": False}))
+    without = float(zero_order_of(slides, speed).critical_depth[0] * 1e3)
     limits = np.array([limit_at(case, one) for one in AMPLITUDES])
     reached = {depth: amplitude_reached(case, depth) for depth in DEPTHS}
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     picture = out / "friction-amplitude.png"
-    plot_limits(limits, reached, at_rest, without).savefig(picture)
+    plot_limits(limits, reached, stuck, without).savefig(picture)
     return [picture, write_limits(case, reached, out)]
 
 

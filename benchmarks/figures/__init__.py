@@ -1,0 +1,1 @@
+"""Figures that were asked for, each measured beside its bound and a peer in one run."""
