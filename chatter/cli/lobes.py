@@ -169,10 +169,12 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         print_line("no pocket between these speeds is deeper than what any of them allows")
     if lowest["critical_depth_mm"] is not None:
         print_line(
-            f"{_stable_below(lowest['stable_below_mm'])} (lowest limit "
+            f"{_stable_below(lowest['stable_below_mm'], diagram)} (lowest limit "
             f"{lowest['critical_depth_mm']:.4g} mm, at {lowest['spindle_speed_rpm']:.0f} rpm, "
             f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz{_taken_off(diagram)})"
         )
+    else:
+        print_line(_without_limit(diagram))
     limit = operating["critical_depth_mm"]
     sure = "" if operating["certain"] else " by the linear analysis, not certain"
     print_answer(
@@ -191,10 +193,23 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     print_line(f"method: {summary['method']}{accuracy}")
 
 
-def _stable_below(depth: float) -> str:
+def _stable_below(depth: float, diagram: StabilityDiagram) -> str:
+    from chatter.stability.registry import METHODS
+
     if depth > 0.0:
-        return f"stable at any of these speeds below {rounded_down(depth)} mm"
+        speeds = "any of these speeds"
+        if not METHODS[diagram.method].is_linear:
+            speeds = f"the {diagram.limits.spindle_speed.size} speeds computed, not between them,"
+        return f"stable at {speeds} below {rounded_down(depth)} mm"
     return "no depth is stable at any speed for certain"
+
+
+def _without_limit(diagram: StabilityDiagram) -> str:
+    """Say that no speed has a limit, and what ended the search."""
+    deepest, tool = max(diagram.max_depth.tolist()), diagram.case.tool
+    reached = deepest >= tool.depth_that_tool_allows * (1.0 - 1e-9)
+    why = f", tool.{tool.limiting_length}" if reached else ", where the search ends"
+    return f"no limit at any of these speeds up to {1e3 * deepest:.4g} mm{why}"
 
 
 def _taken_off(diagram: StabilityDiagram) -> str:

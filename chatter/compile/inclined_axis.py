@@ -103,8 +103,9 @@ def _widest(
     angle = np.linspace(-0.5 * math.pi, 1.5 * math.pi, _ANGLES)
 
     def cuts(at: float, wide: float, kappa: float) -> bool:
-        _, z = engagement.position(np.full(_ANGLES, at), np.full(_ANGLES, wide), angle)
-        ahead = engagement.ahead(np.full(_ANGLES, kappa), angle) >= -1e-12
+        around = np.concatenate([angle, _ends_ahead(engagement, kappa, angle)])
+        _, z = engagement.position(np.full(around.size, at), np.full(around.size, wide), around)
+        ahead = engagement.ahead(np.full(around.size, kappa), around) >= -1e-9
         return bool(np.any(ahead & (engagement.below_surface(z) >= 0.0)))
 
     inside = [k for k in range(height.size) if cuts(height[k], radius[k], immersion[k])]
@@ -119,6 +120,21 @@ def _widest(
         inside_there = cuts(middle, cutter.radius_at(middle), _immersion_at(cutter, middle))
         low, high = (middle, high) if inside_there else (low, middle)
     return float(cutter.radius_at(low))
+
+
+def _ends_ahead(
+    engagement: InclinedEngagement, kappa: float, angle: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Angles about the axis, rad, at which an edge at an immersion angle ends to lie ahead."""
+    ahead = engagement.ahead(np.full(angle.size, kappa), angle)
+    change = np.flatnonzero(ahead[:-1] * ahead[1:] < 0.0)
+    inside = np.where(ahead[change] > 0.0, angle[change], angle[change + 1])
+    outside = np.where(ahead[change] > 0.0, angle[change + 1], angle[change])
+    for _ in range(40):
+        middle = 0.5 * (inside + outside)
+        positive = engagement.ahead(np.full(middle.size, kappa), middle) >= 0.0
+        inside, outside = np.where(positive, middle, inside), np.where(positive, outside, middle)
+    return inside
 
 
 def hint_of_tilt(case: Case) -> str:

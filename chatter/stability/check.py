@@ -58,6 +58,7 @@ from cutting.engagement.immersion import slice_engagement
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
 
 #: bifurcation -> words
 _KINDS = {"hopf": "quasi-periodic", "flip": "period doubling", "fold": "cyclic fold"}
@@ -268,7 +269,7 @@ class StabilityCheck(NotebookResult):
             return self._engagement_of_inclined()
         radius = np.array([cutter_of(self.case).radius_at(self.case.cut.axial_depth)])
         band = self.case.uncut_band
-        entry, leave = np.degrees(slice_engagement(band, radius))[:, 0]
+        entry, leave = _degrees(np.ravel(slice_engagement(band, radius)))
         return [
             ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
             ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
@@ -284,11 +285,14 @@ class StabilityCheck(NotebookResult):
     def _engagement_of_inclined(self) -> list[list[str]]:
         case = self.case
         found = slices_of_inclined(case, cutter_of(case))
-        entry, leave = np.degrees(found.reach)
+        entry, leave = _degrees(found.reach)
+        angles = (
+            f"{entry:.4g} to {leave:.4g} deg" if leave - entry < 360.0 else "all around, 360 deg,"
+        )
         width = inclined_engagement(case, cutter_of(case)).width
         return [
             ["width of cut", f"{1e3 * width:.4g} mm"],
-            ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg about the inclined axis"],
+            ["tooth in the cut", f"{angles} about the inclined axis"],
         ]
 
     def _lowest(self) -> list[list[str]]:
@@ -315,6 +319,11 @@ class StabilityCheck(NotebookResult):
     def save(self, folder: str | Path) -> list[Path]:
         """Write check.json and return its path in a list."""
         return write_results(folder, {"check.json": as_json(self.summary())}, {})
+
+
+def _degrees(angles: ArrayLike) -> list[float]:
+    """Angles, rad, in deg, to what anyone reads of them: 0, not 5e-10."""
+    return [round(float(angle), 6) + 0.0 for angle in np.degrees(angles)]
 
 
 def _hertz(frequency: float) -> str:
@@ -347,12 +356,15 @@ def check(
         If the case lacks something or asks for what cannot be computed.
     """
     chosen = chosen_method(case, method)
+    if case.on_machine:
+        begin(progress, "machine: structure, frictions and loops")
     model = milling_model(case)
     chosen.check(model)
     steps = fixed_steps(case)
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
+    begin(progress, "critical depth at this speed")
     limit = chosen.limits(model, speeds, depths, steps, progress)
     begin(progress, "stability of the cut itself")
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))

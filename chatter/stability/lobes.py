@@ -58,7 +58,10 @@ def lobes(
         If the case lacks something or asks for what cannot be computed.
     """
     chosen = chosen_method(case, method)
+    if case.on_machine:
+        begin(progress, "machine: structure, frictions and loops")
     model = milling_model(case)
+    begin(progress, "stability limits at all speeds")
     speeds = spindle_speeds(case)
     zero_order = zero_order_of(model, speeds)
     max_depth = maximum_depth(case, zero_order)

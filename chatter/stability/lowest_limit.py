@@ -14,8 +14,6 @@ from chatter.stability.limits_by_depth import few_depths
 from chatter.stability.model import MillingModel
 from chatter.stability.stability_method import StabilityMethod
 
-#: method whose limits cost too little to count, so that more of them may be computed
-_QUICK = "collocation"
 #: lowest minima of the samples that are looked into, speeds between neighbours of each, and rounds
 _MINIMA, _BETWEEN, _ROUNDS = 3, 9, 2
 
@@ -33,6 +31,11 @@ _NONE = LowestLimit(np.nan, np.nan, np.nan)
 LimitsBetween = Callable[[Array, float, int], "list[LowestLimit]"]
 
 
+def is_between_speeds(method: StabilityMethod) -> bool:
+    """Whether the lowest limit is looked for between speeds too: cuts in time cost too much."""
+    return method.is_linear
+
+
 def lowest_limit(
     method: StabilityMethod,
     model: MillingModel,
@@ -40,7 +43,7 @@ def lowest_limit(
     depths: Array,
     progress: Progress = no_progress,
 ) -> LowestLimit:
-    """Lowest limit over the speeds of a curve, refined between them where limits cost little.
+    """Lowest limit over the speeds of a curve, and between them; of cuts in time at them alone.
 
     Depths (m,), m, ascending, are those on which limits are searched. About the lowest minima of
     the samples, limits at speeds between their neighbours are computed, and again about the lowest
@@ -48,7 +51,7 @@ def lowest_limit(
     minima. `progress` is called with (done, total).
     """
     samples = [_of(curve, index) for index in range(curve.spindle_speed.size)]
-    if method.name != _QUICK or model.depends_on_speed:
+    if not is_between_speeds(method):
         return next(iter(_lowest(samples)), _NONE)
     # on the same grid, so that the cuts of an inclined tool are those of the curve
     grid = few_depths(depths) if model.is_inclined else depths

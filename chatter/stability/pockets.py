@@ -30,7 +30,7 @@ class Pocket(NamedTuple):
 
     spindle_speed: float  # rad/s
     axial_depth: float  # m
-    critical_depth: float  # m, at the speed itself
+    critical_depth: float  # m, at the speed itself; inf where none was found as far as searched
     removal_rate: float  # m^3/s
 
 
@@ -60,7 +60,7 @@ def find_pockets(
         Pocket(
             float(speeds[i]),
             float(kept * robust[i]),
-            float(limits[i]),
+            float(limits[i]) if limits[i] <= max_depth else np.inf,
             float(kept * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
         for i in indices

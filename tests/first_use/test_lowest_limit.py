@@ -4,7 +4,8 @@ import pytest
 
 import chatter
 from tests.cases import tool_of_922_hertz
-from tests.first_use.shop import cut
+from tests.command_line import chatter_command
+from tests.first_use.shop import cut, written
 
 
 def test_it_does_not_depend_on_the_count_of_speeds():
@@ -44,3 +45,22 @@ def test_pitch_angles_say_below_which_depth_any_speed_is_stable(designed):
     diagram = chatter.lobes(designed.best_case.patch(speeds), "collocation")
     assert designed.best.stable_below == pytest.approx(diagram.lowest_depth, rel=5e-3)
     assert designed.best.stable_below < designed.best.lowest_limit
+
+
+@pytest.mark.parametrize("method", ["semi-discretization", "multi-frequency"])
+def test_it_is_a_bound_by_every_method(method):
+    """Methods but collocation gave the least of their samples."""
+    found = []
+    for count in (9, 40):
+        speeds = {"from": "9500 rpm", "to": "11500 rpm", "count": count}
+        diagram = chatter.lobes(tool_of_922_hertz(lobes={"speeds": speeds}), method)
+        found.append(diagram.lowest.critical_depth)
+    assert found[0] == pytest.approx(found[1], rel=2e-3)
+
+
+def test_where_no_speed_has_a_limit_it_is_said(tmp_path):
+    """Nothing was printed of it, beside a pocket that is no better than any other speed."""
+    path = written(tmp_path)
+    stiff = ("--set", "structure.mode[*].stiffness=400 N/um", "--set", "tool.flute_length=6 mm")
+    told = chatter_command("lobes", path, *stiff, "--out", tmp_path / "out").stdout
+    assert "no limit at any of these speeds up to 6 mm, tool.flute_length" in told

@@ -8,6 +8,7 @@ from chatter.stability.lowest_limit import lowest_limit
 from chatter.stability.model import milling_model
 from chatter.stability.registry import METHODS
 from tests.cases import tool_of_922_hertz
+from tests.places import EXAMPLES
 
 
 def test_multi_frequency_reports_as_it_goes():
@@ -53,10 +54,10 @@ def test_what_follows_the_limits_of_an_inclined_tool_is_named_and_counted():
     depths = {"to": "2 mm", "count": 12}
     chatter.lobes(inclined_ball(speeds=speeds, depths=depths), progress=parts)
     assert parts.names[1:] == [
-        "what linear methods leave out", "limit at the speed of the cut",
-        "lowest limit between the speeds",
+        "stability limits at all speeds", "what linear methods leave out",
+        "limit at the speed of the cut", "lowest limit between the speeds",
     ]  # fmt: skip
-    for name in (parts.names[0], *parts.names[2:]):
+    for name in (parts.names[1], *parts.names[3:]):
         reports = parts.reports[name]
         assert len(reports) > 3, name
         assert all(0 <= done <= total for done, total in reports)
@@ -69,7 +70,7 @@ def test_the_lowest_limit_is_looked_for_no_deeper_than_it_may_lie():
     speeds, asked = np.linspace(500.0, 900.0, 9), []
 
     class Asked:
-        name = "collocation"
+        name, is_linear = "collocation", True
 
         def limits(self, *arguments):
             asked.append(arguments[2])
@@ -85,3 +86,12 @@ def test_the_lowest_limit_is_looked_for_no_deeper_than_it_may_lie():
         model, np.array([found.spindle_speed]), depths, None, lambda done, total: None
     )
     assert whole.critical_depth[0] == pytest.approx(found.critical_depth, rel=1e-9)
+
+
+@pytest.mark.parametrize("call", [chatter.check, chatter.lobes])
+def test_what_is_done_on_a_machine_first_is_named(call):
+    """Ten seconds of assembling a machine were called "critical depth at this speed"."""
+    parts = Parts()
+    call(EXAMPLES / "friction-amplitude" / "case.toml", progress=parts)
+    assert parts.names[1] == "machine: structure, frictions and loops"
+    assert len(parts.names) > 3

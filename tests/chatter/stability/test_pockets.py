@@ -70,3 +70,11 @@ def test_no_pocket_is_shallower_than_what_any_speed_allows():
     found = find_pockets(SPEEDS, deep, 4e-3, 1e-6)
     assert found
     assert all(pocket.axial_depth > deep.min() for pocket in found)
+
+
+def test_no_limit_beyond_what_was_searched_is_given_to_a_pocket():
+    """A machine's pocket had "771.4 mm" for its limit, the search 40 mm."""
+    limits = 1e-3 + hill(1000.0, 700e-3, 40.0)
+    (pocket,) = find_pockets(SPEEDS, limits, 40e-3, 2e-6)
+    assert np.isinf(pocket.critical_depth)
+    assert pocket.axial_depth == pytest.approx((1.0 - DEPTH_MARGIN) * 40e-3)
