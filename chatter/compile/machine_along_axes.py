@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,21 +12,23 @@ from numpy.typing import NDArray
 from chatter.compile.machine_parts import machine_parts
 from chatter.description.machine.errors_by_key import machine_errors
 from chatter.description.machine.machine_file import MachineFile
-from dynamics.machine.along_axes import machines_at, machines_unreduced
-from dynamics.machine.description import Condition, Machine
+from dynamics.machine.along_axes import in_common_coordinates, machines_at, machines_unreduced
+from dynamics.machine.description import Condition, Machine, MachineParts
 from dynamics.machine.moving_structure import MachinesAlong
+from dynamics.machine.transported_coordinates import in_transported_coordinates
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import LinearStructure
 
 #: travel of an axis below which the structure stays as it is, m
 _LEAST_TRAVEL = 1e-3
-#: travel from one position to the next, m, and positions at the most, by the number of axes
-_APART = 0.05
-_POSITIONS = {1: (5, 25), 2: (4, 8)}
+#: travel from one position to the next, m, that of short travels, of a few positions; and positions
+#: at the least and at the most, by the number of axes
+_APART, _APART_OF_FEW, _FEW = 0.05, 0.025, 5
+_POSITIONS = {1: (3, 25), 2: (4, 8)}
 _POSITIONS_OF_MORE = (3, 3)
 #: of natural frequencies blended between two exact steps, what is aimed at, and exact steps along
 #: all axes together at the most
-_TOLERANCE, _MOST_STEPS = 5e-4, 160
+_TOLERANCE, _MOST_STEPS = 1e-3, 160
 #: modes whose frequencies are compared: up to the highest, or to 1 kHz, Hz
 _HIGHEST = 1000.0
 #: frequency below which a motion is one that nothing resists, Hz
@@ -34,9 +37,25 @@ _STILL = 1e-2
 _SAME = 1e-9
 #: part of the distance between two positions by which one is moved to where the axis starts
 _NEAR_START = 0.25
+#: part of a distance between positions that is rounding
+_ROUNDING = 1e-6
 
 #: rows (n,) that are read, by name, of a machine with its axes at positions, m
 Outputs = Callable[[Machine, Mapping[str, float]], Mapping[str, NDArray[np.float64]]]
+
+
+class StateOfMachine(NamedTuple):
+    """State that a machine is moved in."""
+
+    #: as for `chatter.compile.machine_parts.assembled_machine`; positions are where the axes start
+    conditions: Mapping[str, Condition] | None = None
+    positions: Mapping[str, float | str] | None = None
+    friction: bool = True  # whether the frictions are kept
+    in_cut: bool = False  # with the couplings of [contact]
+
+
+#: as the file has it
+AS_IN_FILE = StateOfMachine()
 
 
 def machine_along_axes(
@@ -44,9 +63,8 @@ def machine_along_axes(
     travelled: Mapping[str, tuple[float, float]],
     outputs: Outputs,
     count: int | None = None,
-    conditions: Mapping[str, Condition] | None = None,
-    positions: Mapping[str, float | str] | None = None,
-    friction: bool = True,
+    state: StateOfMachine = AS_IN_FILE,
+    here: Machine | None = None,
 ) -> MachinesAlong | None:
     """Assemble the machine of a file at positions along what its axes travel.
 
@@ -58,12 +76,12 @@ def machine_along_axes(
     outputs : callable
         Machine and positions -> rows that are read, by name.
     count : int, optional
-        Positions of each axis; by default one every 50 mm, 5 to 25 along one axis. The structure
-        stays as it is at the start with 1.
-    conditions, positions
-        As for `chatter.compile.machine_parts.assembled_machine`; where the axes start.
-    friction : bool
-        Whether the frictions are kept.
+        Positions of each axis; by default one every 50 mm along one axis, 25 at the most, and one
+        every 25 mm of a travel below 100 mm, 3 at the least. The structure stays as it is at the
+        start with 1.
+    state : StateOfMachine
+    here : Machine, optional
+        Machine where the axes start, in that state, if it was assembled already.
 
     Returns
     -------
@@ -78,7 +96,7 @@ def machine_along_axes(
     """
     start = {
         name: axis.position for name, axis in file.axis.items() if axis.travelling
-    } | file.positions(positions or {})
+    } | file.positions(state.positions or {})
     file.refuse_travel(
         {
             axis: (start[axis] + low, start[axis] + high)
@@ -88,25 +106,7 @@ def machine_along_axes(
     )
     if count == 1:
         return None
-
-    def at(offsets: Sequence[Mapping[str, float]]) -> tuple[Machine, ...]:
-        everywhere = [start | {axis: start[axis] + x for axis, x in one.items()} for one in offsets]
-        parts = [machine_parts(file, one) for one in everywhere]
-        with machine_errors(file.name):
-            machines = machines_at(parts, conditions)
-        return machines if friction else tuple(one.without_friction() for one in machines)
-
-    def changes(axis: str) -> bool:
-        """Whether an axis alone changes the machine, as its parts tell without any mode."""
-        everywhere = [start | {axis: start[axis] + x} for x in _probes(*travelled[axis])]
-        parts = [
-            replace(machine_parts(file, one), damping_ratio=0.0, mode_damping=())
-            for one in everywhere
-        ]
-        with machine_errors(file.name):
-            return _changes(machines_unreduced(parts, conditions))
-
-    highest = file.highest_frequency or _HIGHEST
+    places = _Places(file, start, state, here)
     changing = [
         axis
         for axis, (low, high) in travelled.items()
@@ -115,36 +115,116 @@ def machine_along_axes(
     # of one axis alone the positions tell as well whether it changes anything
     probed = len(changing) > 1
     if probed:
-        changing = [axis for axis in changing if changes(axis)]
+        changing = [axis for axis in changing if places.change_along(axis, travelled[axis])]
     if not changing:
         return None
-    grid = tuple(
-        _positions(*travelled[axis], count or _count(travelled[axis], len(changing)))
-        for axis in changing
-    )
-    offsets = [dict(zip(changing, one, strict=True)) for one in product(*grid)]
-    first = next(number for number, offset in enumerate(offsets) if not any(offset.values()))
-    order = [first, *(number for number in range(len(offsets)) if number != first)]
-    assembled = dict(zip(order, at([offsets[number] for number in order]), strict=True))
-    machines = tuple(assembled[number] for number in range(len(offsets)))
+    grid, machines = _on_grid(places, {axis: travelled[axis] for axis in changing}, count)
     if not probed and not _changes(machines):
         return None
+    if not state.friction:
+        machines = tuple(one.without_friction() for one in machines)
+    offsets = _offsets(grid)
     return MachinesAlong(
-        tuple(changing),
-        grid,
+        tuple(grid),
+        tuple(grid.values()),
         machines,
         tuple(
             outputs(machine, start | {axis: start[axis] + x for axis, x in offset.items()})
             for machine, offset in zip(machines, offsets, strict=True)
         ),
-        _parts_by_axis(machines, grid, first, highest),
+        _parts_by_axis(
+            machines, tuple(grid.values()), _first(offsets), file.highest_frequency or _HIGHEST
+        ),
     )
+
+
+class _Places:
+    """Unreduced machines of a file at offsets of its axes, m, each assembled once."""
+
+    def __init__(
+        self,
+        file: MachineFile,
+        start: Mapping[str, float],
+        state: StateOfMachine,
+        here: Machine | None,
+    ) -> None:
+        self.file, self.start, self.state = file, start, state
+        self.known: dict[tuple[float, ...], Machine] = {}
+        # one that was not reduced may have lost its frictions
+        if here is not None and (here.unreduced is not None or state.friction):
+            self.known[tuple(start.values())] = here.unreduced or here
+
+    def change_along(self, axis: str, travelled: tuple[float, float]) -> bool:
+        """Whether an axis alone changes the machine, as its parts tell without any mode."""
+        _, machines = self._assembled(
+            [{axis: x} for x in _probes(*travelled)],
+            lambda parts: replace(parts, damping_ratio=0.0, mode_damping=()),
+            machines_unreduced,
+        )
+        return _changes([replace(one, structure=one.assembly.structure) for one in machines])
+
+    def machines(
+        self, offsets: Sequence[Mapping[str, float]]
+    ) -> tuple[list[MachineParts], list[Machine]]:
+        """Parts and machine at each of some offsets."""
+        return self._assembled(offsets, lambda parts: parts, machines_at)
+
+    def _assembled(
+        self,
+        offsets: Sequence[Mapping[str, float]],
+        adapted: Callable[[MachineParts], MachineParts],
+        assemble: Callable[..., list[Machine]],
+    ) -> tuple[list[MachineParts], list[Machine]]:
+        everywhere = [
+            {**self.start, **{axis: self.start[axis] + x for axis, x in one.items()}}
+            for one in offsets
+        ]
+        keys = [tuple(one.values()) for one in everywhere]
+        parts = [adapted(machine_parts(self.file, one, self.state.in_cut)) for one in everywhere]
+        with machine_errors(self.file.name):
+            machines = assemble(parts, self.state.conditions, [self.known.get(key) for key in keys])
+        self.known.update(zip(keys, machines, strict=True))
+        return parts, machines
+
+
+def _on_grid(
+    places: _Places, travelled: Mapping[str, tuple[float, float]], count: int | None
+) -> tuple[dict[str, NDArray[np.float64]], tuple[Machine, ...]]:
+    """Positions along axes, m, and the machine in few coordinates at each of the grid of them."""
+    usual = {axis: count or _count(ends, len(travelled)) for axis, ends in travelled.items()}
+    more = {axis: max(number, _FEW) for axis, number in usual.items()}
+    # where few positions are too far apart for coordinates that follow each other, more are not
+    tried = [usual] if count or len(travelled) > 1 or more == usual else [usual, more]
+    for counts in tried:
+        grid = {axis: _positions(*travelled[axis], counts[axis]) for axis in travelled}
+        offsets = _offsets(grid)
+        first = _first(offsets)
+        order = [first, *(number for number in range(len(offsets)) if number != first)]
+        parts, full = places.machines([offsets[number] for number in order])
+        found = in_transported_coordinates(full, parts[0])
+        if found is not None:
+            break
+    if found is None:
+        with machine_errors(places.file.name):
+            found = in_common_coordinates(full, parts[0])
+    machines = dict(zip(order, found, strict=True))
+    return grid, tuple(machines[number] for number in range(len(offsets)))
+
+
+def _offsets(grid: Mapping[str, NDArray[np.float64]]) -> list[dict[str, float]]:
+    """Offsets of the axes, m, at every place of a grid; the last axis varies fastest."""
+    return [dict(zip(grid, one, strict=True)) for one in product(*grid.values())]
+
+
+def _first(offsets: Sequence[Mapping[str, float]]) -> int:
+    """Number of the place where the axes start."""
+    return next(number for number, offset in enumerate(offsets) if not any(offset.values()))
 
 
 def machine_at_start(along: MachinesAlong) -> Machine:
     """Machine where the axes start."""
-    offsets = product(*along.positions)
-    return next(one for one, offset in zip(along.machines, offsets, strict=True) if not any(offset))
+    grid = dict(zip(along.axes, along.positions, strict=True))
+    return along.machines[_first(_offsets(grid))]
 
 
 def _changes(machines: Sequence[Machine]) -> bool:
@@ -231,8 +311,9 @@ def _frequencies(structure: LinearStructure) -> NDArray[np.float64]:
 def _count(travelled: tuple[float, float], axes: int) -> int:
     """Positions of an axis, one of some that change the structure."""
     fewest, most = _POSITIONS.get(axes, _POSITIONS_OF_MORE)
-    low, high = travelled
-    return min(max(math.ceil((high - low) / _APART) + 1, fewest), most)
+    travel = travelled[1] - travelled[0]
+    few = min(math.ceil(travel / _APART_OF_FEW - _ROUNDING) + 1, _FEW)
+    return min(max(math.ceil(travel / _APART - _ROUNDING) + 1, few, fewest), most)
 
 
 def _positions(low: float, high: float, count: int) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import rigid_motion
-from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
+from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_cut import MachineCut, cut_on, machine_cut, named_rows, rows_of_cut
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -201,9 +201,8 @@ def _along(case: Case, cut: MachineCut, points: SetPoints) -> MachinesAlong | No
         travelled,
         lambda machine, places: rows_of_cut(case, cut.file, machine, places),
         section.travel_positions,
-        section.condition,
-        section.position,
-        section.friction is not False,
+        StateOfMachine(section.condition, section.position, section.friction is not False),
+        cut.machine,
     )
 
 

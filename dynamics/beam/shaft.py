@@ -6,6 +6,7 @@ A line is a part that `dynamics.structure.assembly.assemble` joins with bodies a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -228,6 +229,12 @@ class BeamLine:
     def with_stations(self, stations: Iterable[float]) -> BeamLine:
         """Same line with nodes at stations, m, those asked for before left out."""
         return replace(self, stations=tuple(stations))
+
+    def begun_at(self, origin: ArrayLike) -> BeamLine:
+        """Same line elsewhere, beginning at (3,), m; what is known of its matrices stays known."""
+        elsewhere = copy(self)
+        object.__setattr__(elsewhere, "origin", finite(self.name, "origin", origin, (3,)))
+        return elsewhere
 
     def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
         """Displacements and rotations at a position per freedom of the nodes.

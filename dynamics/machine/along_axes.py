@@ -26,7 +26,6 @@ from dynamics.machine.description import (
     meshed_beams,
     reduced,
 )
-from dynamics.machine.transported_coordinates import in_transported_coordinates
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.bodies import MeshedPart
 from dynamics.structure.linear_structure import LinearStructure, StructureError
@@ -40,9 +39,11 @@ _SAME_MASS = 1e-9
 
 
 def machines_at(
-    positions: Sequence[MachineParts], conditions: Mapping[str, Condition] | None = None
-) -> tuple[Machine, ...]:
-    """Assemble a machine at positions of its axes, in the coordinates of all of them.
+    positions: Sequence[MachineParts],
+    conditions: Mapping[str, Condition] | None = None,
+    known: Sequence[Machine | None] = (),
+) -> list[Machine]:
+    """Assemble a machine at positions of its axes, in the freedoms of all of its parts.
 
     Parameters
     ----------
@@ -50,40 +51,77 @@ def machines_at(
         The same parts at each; that at the first gives the first coordinates.
     conditions : mapping of str to {"control", "brake", "free"}, optional
         As for `dynamics.machine.description.machine`.
+    known : sequence of (Machine or None)
+        Unreduced machines that were assembled already at the positions, in these conditions.
 
     Returns
     -------
-    tuple of Machine
-        One a position.
+    list of Machine
+        One a position, of one mass.
 
     Raises
     ------
     StructureError
         If the machine makes no sense at one of them, or the mass changes along the travel.
     """
-    full = machines_unreduced(positions, conditions)
+    full = machines_unreduced(positions, conditions, known)
     first = full[0]
     for other in full[1:]:
         _require_same_mass(first, other)
     rubbing = {one.name: one for one in positions[0].frictions if one.mode is not None}
-    full = [first, *(_with_modes_followed(one, first, rubbing) for one in full[1:])]
-    few = in_transported_coordinates(full, positions[0])
-    if few is not None:
-        return few
-    basis = _common_basis(full, positions[0])
+    return [first, *(_with_modes_followed(one, first, rubbing) for one in full[1:])]
+
+
+def in_common_coordinates(full: Sequence[Machine], parts: MachineParts) -> tuple[Machine, ...]:
+    """Reduce a machine at positions of its axes to the motions of all of them.
+
+    The parts are those at the first position, with the highest frequency and the points whose
+    static answer is kept.
+    """
+    basis = _common_basis(full, parts)
     if basis is None:
         return tuple(full)
     return tuple(in_coordinates(one, _projected(one.structure, basis), basis) for one in full)
 
 
 def machines_unreduced(
-    positions: Sequence[MachineParts], conditions: Mapping[str, Condition] | None = None
+    positions: Sequence[MachineParts],
+    conditions: Mapping[str, Condition] | None = None,
+    known: Sequence[Machine | None] = (),
 ) -> list[Machine]:
-    """Assemble a machine at positions of its axes, in the freedoms of all of its parts.
+    """Assemble a machine at positions of its axes as `machines_at` does, whatever its mass.
 
-    Arguments and errors as for `machines_at`.
+    Frictions on modes have the modes of their number at each. Arguments and errors as there.
     """
-    return [full_machine(parts, conditions) for parts in _in_one_mesh(positions, conditions)]
+    all_known = [*known, *[None] * (len(positions) - len(known))]
+    return [
+        _completed(parts, conditions, before)
+        for parts, before in zip(_in_one_mesh(positions, conditions), all_known, strict=True)
+    ]
+
+
+def _completed(
+    parts: MachineParts, conditions: Mapping[str, Condition] | None, known: Machine | None
+) -> Machine:
+    """Machine of parts, with the damping of its modes; what is known of it is not made again."""
+    if known is None or not _of_mesh(known, parts):
+        return full_machine(parts, conditions)
+    damped = parts.damping_ratio != 0.0 or parts.mode_damping
+    if damped and known.modes is None:
+        return full_machine(parts, conditions, known.assembly)
+    return known
+
+
+def _of_mesh(known: Machine, parts: MachineParts) -> bool:
+    """Whether the beams of an assembled machine have the nodes that those of parts have."""
+    return all(
+        _stations(known.assembly.parts[beam.name]) == _stations(beam) for beam in parts.beams
+    )
+
+
+def _stations(beam: MeshedPart) -> list[float]:
+    """Where a beam has nodes because something is joined there, m."""
+    return sorted(set(np.round(beam.stations, 12)))
 
 
 def _in_one_mesh(
@@ -100,10 +138,8 @@ def _in_one_mesh(
     meshed = {one.name: one.with_stations(everywhere[one.name]) for one in positions[0].beams}
 
     def meshed_anew(one: MeshedPart) -> MeshedPart:
-        first = meshed[one.name]
-        # the matrices of one that stays are made once
-        stays = np.array_equal(first.origin, one.origin)
-        return first if stays else one.with_stations(everywhere[one.name])
+        # its matrices are made once
+        return meshed[one.name].begun_at(one.origin)
 
     return [replace(parts, beams=[meshed_anew(one) for one in parts.beams]) for parts in positions]
 

@@ -164,6 +164,8 @@ class Machine:
     modes: Modes | None = None
     #: the structure holds their springs as closed: so does all that is linear
     backlashes: tuple[BacklashAt, ...] = ()
+    #: machine that it was reduced from
+    unreduced: Machine | None = None
 
     def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
         """Row (n,) of the sum of motions of parts, as a port of the structure."""
@@ -196,21 +198,19 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
     return reduced(full, parts.highest_frequency, parts.kept_points)
 
 
-def full_machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = None) -> Machine:
-    """Assemble a machine as `machine` does, with all of its modes."""
+def full_machine(
+    parts: MachineParts,
+    conditions: Mapping[str, Condition] | None = None,
+    whole: Assembly | None = None,
+) -> Machine:
+    """Assemble a machine as `machine` does, with all of its modes.
+
+    What was assembled of the same parts already, in the same conditions, may be given.
+    """
     held = _conditions(parts.axes, conditions or {})
     driven = {axis.name: axis.drive.parts(axis.geometry) for axis in parts.axes}
-    connectors, couplings = _links(parts, held, driven)
-    moving = sum(condition != "brake" for condition in held.values())
-    whole = assembly(
-        parts.bodies,
-        connectors,
-        parts.points,
-        parts.beams,
-        parts.allowed_rigid_motions + moving,
-        [rotor for drive in driven.values() for rotor in drive.rotors],
-        couplings,
-    )
+    if whole is None:
+        whole = _assembled(parts, held, driven)
     structure, modes = whole.structure, None
     if parts.damping_ratio != 0.0 or parts.mode_damping:
         modes = undamped_modes(structure)
@@ -237,6 +237,23 @@ def full_machine(parts: MachineParts, conditions: Mapping[str, Condition] | None
         whole,
         modes=modes,
         backlashes=_backlashes(driven, whole),
+    )
+
+
+def _assembled(
+    parts: MachineParts, held: Mapping[str, Condition], driven: Mapping[str, DriveParts]
+) -> Assembly:
+    """Assembly of parts and drives, whose axes are held by something or nothing."""
+    connectors, couplings = _links(parts, held, driven)
+    moving = sum(condition != "brake" for condition in held.values())
+    return assembly(
+        parts.bodies,
+        connectors,
+        parts.points,
+        parts.beams,
+        parts.allowed_rigid_motions + moving,
+        [rotor for drive in driven.values() for rotor in drive.rotors],
+        couplings,
     )
 
 
@@ -311,6 +328,7 @@ def in_coordinates(full: Machine, structure: LinearStructure, basis: NDArray) ->
         preloads=tuple(one._replace(row=one.row @ basis) for one in full.preloads),
         backlashes=tuple(one._replace(row=one.row @ basis) for one in full.backlashes),
         basis=basis,
+        unreduced=full,
     )
 
 
@@ -336,8 +354,8 @@ def with_modal_damping(
     for band in bands:
         inside = (modes.frequency >= band.lowest) & (modes.frequency <= band.highest)
         ratios[inside] = band.ratio
-    moved = structure.mass @ modes.shapes
-    added = (moved * (4.0 * np.pi * ratios * modes.frequency)) @ moved.T
+    moved = (structure.mass @ modes.shapes) * np.sqrt(4.0 * np.pi * ratios * modes.frequency)
+    added = moved @ moved.T
     return replace(structure, damping=structure.damping + added)
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from dynamics.compiled import INLINED
 from dynamics.machine.description import Machine
-from dynamics.machine.steps import StructureSteps, multiply
+from dynamics.machine.steps import StructureSteps, multiply, multiply_lower
 from dynamics.matrix_exponential import exact_step
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import StructureError
@@ -69,9 +69,9 @@ class MovingStructure(NamedTuple):
     displacement: NDArray[np.float64]  # (t, s, p)
     velocity: NDArray[np.float64]  # (t, s, p)
     stiffness: NDArray[np.float64]  # of unit masses, 1/s^2, (t, n, n)
-    damping: NDArray[np.float64]  # 1/s, (t, n, n)
+    damping: NDArray[np.float64]  # 1/s, as `_lower`, (t, n, n)
     stiffness_now: NDArray[np.float64]  # (n, n)
-    damping_now: NDArray[np.float64]  # (n, n)
+    damping_now: NDArray[np.float64]  # as `_lower`, (n, n)
     unit: NDArray[np.float64]  # coordinate per displacement of a freedom, 1/s, (n,)
     strain: NDArray[np.float64]  # displacements of the freedoms, to work in, (n,)
     strained: NDArray[np.float64]  # stiffness times those, (n,)
@@ -82,9 +82,9 @@ class EnergyAccount(NamedTuple):
     """Account of the energy of a moving structure; it puts on no force."""
 
     stiffness: NDArray[np.float64]  # as it is now, (n, n)
-    damping: NDArray[np.float64]  # (n, n)
+    damping: NDArray[np.float64]  # as `_lower`, (n, n)
     unit: NDArray[np.float64]  # (n,)
-    resisted: NDArray[np.float64]  # damping times velocity at the end of the step, (n,)
+    resisted: NDArray[np.float64]  # that damping times velocity at the end of the step, (n,)
     power: NDArray[np.float64]  # dissipated at the end of the last step, W, (1,)
     sums: NDArray[
         np.float64
@@ -149,6 +149,7 @@ def moving_structure(
     ]
     columns = {name: np.ascontiguousarray([table[name] for table in tables]) for name in tables[0]}
     ports = shapes[0].shape[0]
+    damping = np.array([_lower(one) for one in damping])
     bus = _bus(columns, start, step, ports)
     if velocity is not None:
         moving = modes.shapes.T @ (reference.mass @ velocity)
@@ -312,6 +313,11 @@ def _columns(
     }
 
 
+def _lower(damping: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lower triangle that dissipates as a symmetric damping does, with half of the entries."""
+    return np.tril(damping) + np.tril(damping, -1)
+
+
 def _bus(
     columns: Mapping[str, NDArray[np.float64]], start: int, step: float, ports: int
 ) -> StructureSteps:
@@ -329,6 +335,8 @@ def _bus(
         pairs=np.zeros((4, 0)),
         **now,
         **answers,
+        displaced=size // 2,
+        moving=size // 2,
         state=np.zeros(size),
         after=np.zeros(size),
         **{name: np.zeros(ports) for name in signals},
@@ -408,8 +416,9 @@ def _publish(bus):
     """Motion of the ports where the step begins."""
     for p in range(bus.u_before.shape[0]):
         u, v = 0.0, 0.0
-        for i in range(bus.state.shape[0]):
+        for i in range(bus.displaced):
             u += bus.displacement[i, p] * bus.state[i]
+        for i in range(bus.moving, bus.state.shape[0]):
             v += bus.velocity[i, p] * bus.state[i]
         bus.u_before[p], bus.v_before[p] = u, v
 
@@ -466,8 +475,7 @@ def energy_commit(group, bus, clock):  # noqa: ARG001
         u0, u1 = bus.u_before[p], bus.u[p]
         mean = 0.5 * (u0 + u1) + h / 12.0 * (bus.v_before[p] - bus.v[p])
         work += bus.force[p] * (u1 - u0) + bus.change[p] * (u1 - mean)
-    # the damping is symmetric: row by row its sums run side by side
-    multiply(group.damping, bus.after[n:], group.resisted, n)
+    multiply_lower(group.damping, bus.after[n:], group.resisted, n)
     power = 0.0
     for i in range(n):
         power += bus.after[n + i] * group.resisted[i]

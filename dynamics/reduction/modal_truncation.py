@@ -75,11 +75,7 @@ def undamped_modes(
     inertia = np.einsum("nm,nm->m", shapes, structure.mass @ shapes)
     shapes = shapes / np.sqrt(inertia)
     energy = np.einsum("nm,nm->m", shapes, structure.stiffness @ shapes)
-    terms = np.einsum("nm,nm->m", abs(shapes), abs(structure.stiffness) @ abs(shapes))
-    # a motion that gives a little energy back shows how far rounding reaches
-    back = np.divide(energy, terms, out=np.zeros_like(energy), where=terms > 0.0)
-    reach = max(ROUNDING, -10.0 * float(np.min(back, initial=0.0)))
-    energy[abs(energy) <= min(reach, 1e3 * ROUNDING) * terms] = 0.0
+    _without_rounding(energy, shapes, abs(structure.stiffness))
     energy[abs(energy) <= _STILL**2 * np.max(energy, initial=0.0)] = 0.0
     if np.any(energy < 0.0):
         raise StructureError("modes: the stiffness is not positive: a motion gives energy back")
@@ -90,6 +86,24 @@ def undamped_modes(
     kept = int(np.searchsorted(frequency, highest, side="right"))
     kept = kept if count is None else min(kept, count)
     return Modes(frequency[:kept], shapes[:, order[:kept]])
+
+
+def _without_rounding(
+    energy: NDArray[np.float64], shapes: NDArray[np.float64], entries: Any
+) -> None:
+    """Set energies of shapes to 0 that are what rounding leaves of sums.
+
+    The entries are those of the stiffness without their signs.
+    """
+    # twice |a b| is at most a^2 + b^2: the terms of a sum are bounded by those of its rows
+    bound = np.asarray(entries.sum(axis=1)).ravel() @ shapes**2
+    small = np.flatnonzero(energy <= 1e3 * ROUNDING * bound)
+    moved = abs(shapes[:, small])
+    terms = np.einsum("nm,nm->m", moved, entries @ moved)
+    # a motion that gives a little energy back shows how far rounding reaches
+    back = np.divide(energy[small], terms, out=np.zeros_like(terms), where=terms > 0.0)
+    reach = max(ROUNDING, -10.0 * float(np.min(back, initial=0.0)))
+    energy[small[abs(energy[small]) <= min(reach, 1e3 * ROUNDING) * terms]] = 0.0
 
 
 def _dense_shapes(mass: NDArray[np.float64], stiffness: NDArray[np.float64]) -> NDArray[np.float64]:

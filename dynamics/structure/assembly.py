@@ -161,8 +161,11 @@ def _side_by_side(matrices: Sequence[NDArray[np.float64]]) -> NDArray[np.float64
 def _over(deformations: Sequence[NDArray], rates: Sequence[NDArray]) -> NDArray[np.float64]:
     if not deformations:
         return 0.0
-    rows = np.vstack(deformations)
-    return rows.T @ (np.concatenate(rates)[:, None] * rows)
+    each = np.concatenate(rates)
+    # most directions of most joints have no rate, dampers above all
+    acting = each != 0.0
+    rows = np.vstack(deformations)[acting]
+    return rows.T @ (each[acting, None] * rows)
 
 
 def _refuse_free_parts(

@@ -70,6 +70,9 @@ class MeshedPart(Part, Protocol):
     def with_stations(self, stations: Iterable[float]) -> MeshedPart:
         """Same part with nodes at stations, m."""
 
+    def begun_at(self, origin: ArrayLike) -> MeshedPart:
+        """Same part elsewhere, beginning at (3,), m."""
+
 
 @dataclass(frozen=True, eq=False)
 class Body:

@@ -44,10 +44,10 @@ class Composition:
         file = self.file
         for kind in ("body", "beam"):
             for name, section in getattr(file, kind).items():
-                yield f"{kind}.{name}", partial(section.part, name, self.shift(name))
+                yield self._made_once_at_rest(f"{kind}.{name}", name, partial(section.part, name))
         for name, connector in file.connector.items():
-            shift = self.shift(connector.between[0])
-            yield f"connector.{name}", partial(connector.parts, name, shift)
+            make = partial(connector.parts, name)
+            yield self._made_once_at_rest(f"connector.{name}", connector.between[0], make)
         for name, axis in file.axis.items():
             yield f"axis.{name}", partial(self.geometry, name)
             if axis.drive is not None:
@@ -57,6 +57,15 @@ class Composition:
                 yield f"axis.{name}.control", partial(axis.control.spec, 1.0)
         for name, friction in file.friction.items():
             yield f"friction.{name}", friction.spec
+
+    def _made_once_at_rest(
+        self, key: str, part: str, make: Callable[[NDArray[np.float64]], Any]
+    ) -> tuple[str, Callable[[], Any]]:
+        """Path and maker of what travels with a part; where that stays, it is made once."""
+        shift = self.shift(part)
+        if np.any(shift):
+            return key, partial(make, shift)
+        return key, partial(self.file.once, key, partial(make, shift))
 
     def geometry(self, name: str) -> DrivenAxis:
         """Where an axis is driven."""

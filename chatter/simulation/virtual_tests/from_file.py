@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import closed_backlashes, linearised_frictions
-from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
+from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import (
@@ -268,9 +268,8 @@ def _along(
         ranges,
         lambda one, _: {} if file.tool_point is None else _named_rows(_tool_rows(file, one)),
         section.travel_positions,
-        section.condition,
-        section.position,
-        section.friction,
+        StateOfMachine(section.condition, section.position, section.friction, section.in_cut),
+        machine,
     )
 
 

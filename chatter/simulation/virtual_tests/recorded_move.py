@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
+from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -76,9 +76,8 @@ def _machine(
         {axis: (lowest, highest)},
         lambda *_: {},
         section.travel_positions,
-        section.condition,
-        section.position,
-        section.friction is not False,
+        StateOfMachine(section.condition, section.position, section.friction is not False),
+        machine,
     )
     return (machine if along is None else machine_at_start(along)), along
 

@@ -161,7 +161,9 @@ def test_between_positions_the_machine_is_that_of_the_file_there(file):
 
 def test_common_coordinates_give_the_same_answer(file, moving, monkeypatch):
     """Far more coordinates, the same at all positions, answer the blow alike."""
-    monkeypatch.setattr("dynamics.machine.along_axes.in_transported_coordinates", lambda *_: None)
+    monkeypatch.setattr(
+        "chatter.compile.machine_along_axes.in_transported_coordinates", lambda *_: None
+    )
     patched = file.patch({"axis.X.position": START})
     along = machine_along_axes(patched, {"X": (0.0, TRAVEL)}, lambda one, _: tool(one))
     machine = machine_at_start(along)

@@ -220,6 +220,30 @@ def test_one_reduction_keeps_the_responses_of_every_position(screw_machine):
         assert np.max(np.abs(found - wanted)) < 5e-3 * np.max(np.abs(wanted))
 
 
+def test_contact_of_a_move_in_the_cut_travels_along(screw_machine, monkeypatch):
+    """Everywhere the tool is held as that of the file in the cut there; it once was not at all."""
+    contact = {"contact": {"stiffness": "50 N/um", "directions": ["z"]}}
+    file = screw_machine.patch({"axis.X.brake.stiffness": "1e6 N*m/rad", **contact})
+    grids = []
+
+    def kept(*given):
+        grids.append(machine_along_axes(*given))
+        return grids[-1]
+
+    monkeypatch.setattr("chatter.simulation.virtual_tests.from_file.machine_along_axes", kept)
+    assert moved(file, 3, in_cut=True).energy
+    (grid,) = grids
+    frequency = np.array([30.0, 60.0])
+    for place, machine in zip(grid.positions[0], grid.machines, strict=True):
+        frozen = assembled_machine(file, positions={"X": float(place)}, in_cut=True)
+        mine, exact = (
+            one.structure.receptance(frequency, one.structure.port("tcp", [0.0, 0.0, 1.0])[None])
+            for one in (machine, frozen)
+        )
+        assert mine == pytest.approx(exact, rel=5e-3)
+        assert np.max(np.abs(mine)) < 1.0 / 50e6  # of the contact alone
+
+
 def test_start_within_the_travel(screw_machine):
     grid = grid_of(screw_machine, 4, -0.02, 0.3)
     assert 0.0 in grid.positions[0]
@@ -231,8 +255,9 @@ def test_start_within_the_travel(screw_machine):
 
 
 def test_number_of_positions_by_the_travel(screw_machine):
-    counts = [len(grid_of(screw_machine, None, 0.0, high).positions[0]) for high in (0.05, 0.6)]
-    assert counts == [5, 13]
+    travels = (0.05, 0.07, 0.1, 0.6)
+    counts = [len(grid_of(screw_machine, None, 0.0, high).positions[0]) for high in travels]
+    assert counts == [3, 4, 5, 13]
 
 
 def moved(file, count, **changes):
