@@ -23,7 +23,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import rounded_down
+from chatter.description.formatting import rounded_down, to_digits
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
             f"{pocket['spindle_speed_rpm']:.0f}",
             f"{pocket['axial_depth_mm']:.3f}",
             _millimetres(pocket["critical_depth_mm"], summary["max_axial_depth_mm"]),
-            f"{pocket['removal_rate_cm3_per_min']:.3g}",
+            to_digits(pocket["removal_rate_cm3_per_min"], 3),
         ]
         for pocket in summary["pockets"]
     ]

@@ -35,6 +35,8 @@ _LOOKED_EVERY = 0.5
 #: two estimates this far apart, s, and as near as this share are one to announce; so is any after
 #: this long, s: the first parts of a search are hardly like the others
 _APART, _NEAR, _LONG_ENOUGH = 2.0, 0.3, 10.0
+#: s of a part from which on its time is told
+_NEWS = 0.5
 #: s of work from which its pace is known, and that it is taken over
 _PACE = 1.0
 _OF_LATE = 20.0
@@ -143,6 +145,9 @@ class RunningWork:
     def line(self) -> str:
         """Line on what is being done and how far it is."""
         done, total = self.counts
+        if self.elapsed < _NEWS and not done:
+            # a part that has just begun: "0 s so far" is no news
+            return f"{self.description} ..."
         so_far = f"{elapsed_in_words(self.elapsed)} so far"
         if self._is_compiling() and not done:
             so_far = f"compiling what is used for the first time, {so_far}"

@@ -84,13 +84,13 @@ def simulate(
 def _print_summary(result: SimulationResult) -> None:
     summary = result.summary()
     peak, mean = summary["peak_force_N"], summary["mean_force_N"]
-    rows = [[name, f"{peak[name]:.4g}", f"{mean[name]:.4g}"] for name in peak]
+    rows = [[name, _newtons(peak[name]), _newtons(mean[name])] for name in peak]
     part = "in chatter" if summary["verdict"] == "chatter" else "settled cut"
     print_table(f"force on the tool, {part}", ["", "peak [N]", "mean [N]"], rows)
     power = summary["power"]
     print_line(
         f"power {_watts(power['mean_W'])} mean, {_watts(power['peak_W'])} peak; "
-        f"torque {power['mean_torque_Nm']:.3g} N m mean"
+        f"torque {to_digits(power['mean_torque_Nm'], 3)} N m mean"
     )
     print_line(
         f"{_speed(result.case)}, cutting speed {summary['cutting_speed_m_per_min']:.4g} "
@@ -106,6 +106,11 @@ def _print_summary(result: SimulationResult) -> None:
     print_answer(f"{summary['verdict']}{at}: {summary['reason']}")
     if result.linear is not None:
         print_line(result.linear.sentence())
+
+
+def _newtons(force: float) -> str:
+    """Force to four digits, and to a thousandth of a newton: below is rounding alone."""
+    return to_digits(round(force, 3) + 0.0, 4)
 
 
 def _watts(power: float) -> str:

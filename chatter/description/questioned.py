@@ -141,10 +141,11 @@ def _question_of_stiff_tool(case: Case) -> list[str]:
             if mode.side == "tool"
         )
         if compliance and 1.0 / compliance > _STIFFER * solid:
+            given, most = (to_digits(1e-6 * one, 3) for one in (1.0 / compliance, solid))
             return [
-                f"structure.mode: are {1e-6 / compliance:.3g} N/um along {name} meant? a solid "
+                f"structure.mode: are {given} N/um along {name} meant? a solid "
                 f"carbide tool of {1e3 * tool.diameter:g} mm that stands out "
-                f"{1e3 * tool.stick_out:g} mm (tool.stick_out) has at most {1e-6 * solid:.3g} N/um"
+                f"{1e3 * tool.stick_out:g} mm (tool.stick_out) has at most {most} N/um"
             ]
     return []
 

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from chatter.description.arrays import Array, IntegerArray
+from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
@@ -297,7 +298,7 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
     """List below the picture what the numbers in it stand for."""
     lines = [
         f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
-        f"{pocket.removal_rate * 6e7:.3g} cm³/min"
+        f"{to_digits(pocket.removal_rate * 6e7, 3)} cm³/min"
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
     rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]

@@ -11,6 +11,7 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
 from chatter.description.case import Case
+from chatter.description.formatting import to_digits
 from chatter.plots import style
 from chatter.studies.whatif.summary import ranked, title_of, unit_of, value_text
 
@@ -217,7 +218,7 @@ def _write_values(axes: Axes, study: WhatIf, values: np.ndarray) -> None:
         row, column = divmod(index, values.shape[1])
         value = values[row, column]
         if np.isfinite(value):
-            text, colour = f"{value:.3g}", "black" if value > middle else "white"
+            text, colour = to_digits(value, 3), "black" if value > middle else "white"
         else:
             text = "failed" if outcome.failure else "none\nfound"
             colour = "black"

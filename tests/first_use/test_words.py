@@ -303,3 +303,35 @@ def test_the_sign_of_an_error_of_the_surface_is_in_its_words(wall, floor, told):
     lines = _surface(summary, 90.0)
     for line, words in zip(lines, told, strict=True):
         assert line.endswith(words)
+
+
+EXPONENT = re.compile(r"\d[eE][+-]?\d\d")
+HEAVY = {
+    "tool.diameter": "250 mm", "tool.teeth": "16", "cut.mode": "face",
+    "cut.workpiece_width": "180 mm", "cut.axial_depth": "8 mm", "cut.feed_rate": "none",
+    "cut.feed_per_tooth": "0.3 mm", "cut.cutting_speed": "1200 m/min",
+    "structure.mode[*].stiffness": "9000 N/um", "lobes.speeds": "1000..2000 rpm:30",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check",),
+        ("lobes",),
+        ("simulate", "--set", "structure=none"),
+        ("whatif", "--vary", "cut.axial_depth=8 mm, 9 mm", "--set", "structure=none",
+         "--result", "forces"),
+        ("whatif", "--vary", "structure.mode[*].stiffness=2 N/um, 9000 N/um",
+         "--result", "critical depth"),
+        ("optimum", "--set", "optimum.depths=1..9 mm:3"),
+    ],
+)  # fmt: skip
+def test_large_numbers_have_no_exponent(words, tmp_path):
+    """ "3.74e+3 W", "1.24e+03 cm3/min"."""
+    command, *further = words
+    sets = [word for key, value in HEAVY.items() for word in ("--set", f"{key}={value}")]
+    result = chatter_command(command, written(tmp_path), *sets, *further, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    shown = result.stdout + result.stderr.replace(str(tmp_path), "")
+    assert not EXPONENT.findall(shown), shown

@@ -137,10 +137,10 @@ class Optimum(SavedResult):
         best = self.best
         point, known = best.point, best.probability
         lines = [
-            f"{rpm(point.spindle_speed):.5g} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
+            f"{to_digits(rpm(point.spindle_speed), 6)} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
             f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
-            f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
-            f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
+            f"{to_digits(best.removal_rate * _PER_MINUTE, 4)} cm^3/min",
+            f"{best.power * 1e-3:.3g} kW, {to_digits(best.torque, 3)} N m, deflection "
             f"{to_digits(best.deflection * 1e6, 3)} um, "
             f"surface error {to_digits(best.surface_error * 1e6, 3)} um",
         ]

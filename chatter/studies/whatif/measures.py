@@ -56,6 +56,7 @@ class Quantity:
     unit: str
     beyond: str = ""  # number that it lies above where it is None
     at_zero: str = ""  # what is said in the place of 0
+    most: float = math.inf  # beyond which it tells nothing but that
     bounds: str = ""  # number that it is a bound of, beside which it is said only where it differs
 
 
@@ -293,7 +294,7 @@ _MEASURES = (
             "critical_depth_mm": _CRITICAL,
             "chatter_frequency_Hz": Quantity("chatter frequency at the limit", "Hz"),
             "certain_depth_mm": _CERTAIN,
-            "spectral_radius": Quantity("spectral radius of the cut", ""),
+            "spectral_radius": Quantity("spectral radius of the cut", "", most=1e3),
         },
         _critical_depth,
     ),

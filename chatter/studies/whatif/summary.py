@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from chatter.description.case import Case
+from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
 from chatter.stability.neglected_effects import NOT_CERTAIN
 from chatter.studies.whatif.measures import Curve, Outcome, Quantity
@@ -50,11 +51,13 @@ def value_text(quantity: Quantity, outcome: Outcome, key: str) -> str:
     unit = unit_of(quantity, outcome, key)
     if value == 0.0 and quantity.at_zero:
         return quantity.at_zero
+    if value is not None and value > quantity.most:
+        return f"more than {quantity.most:.6g} {unit}".strip()
     if value is not None:
-        return f"{value:.4g} {unit}".strip()
+        return f"{to_digits(value, 4)} {unit}".strip()
     beyond = outcome.numbers.get(quantity.beyond)
     if beyond is not None:
-        return f"above {beyond:.4g} {unit}"
+        return f"above {to_digits(beyond, 4)} {unit}"
     return "none"
 
 
@@ -64,7 +67,7 @@ def change_text(before: float | None, after: float | None) -> str:
         return ""
     share = after / before - 1.0
     if share > _MANY_TIMES:
-        return f" ({1.0 + share:.3g} times)"
+        return f" ({to_digits(1.0 + share, 3)} times)"
     return " (no change)" if abs(share) < _NO_CHANGE else f" ({100.0 * share:+.3g} %)"
 
 
@@ -188,7 +191,8 @@ def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[s
     for key, quantity in _changed_quantities(study, before, after).items():
         pair = value_text(quantity, before, key), value_text(quantity, after, key)
         share = change_text(before.numbers.get(key), after.numbers.get(key))
-        if quantity.at_zero in pair:
+        told_as_words = quantity.at_zero in pair or any(one.startswith("more than") for one in pair)
+        if told_as_words:
             share = ""
         if key == _PEAK_FREQUENCY and _is_another_peak(before, after):
             share = ", which is another peak,"

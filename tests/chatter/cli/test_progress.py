@@ -32,7 +32,7 @@ def clock():
 def test_the_time_left_is_that_of_the_pace_so_far(clock):
     work = RunningWork("limits", clock)
     assert work.remaining() is None
-    assert work.line() == "limits: 0 s so far"
+    assert work.line() == "limits ..."
     work(0, 200)
     clock.now += 10.0
     assert work.line() == "limits: 0 of 200, 10 s so far"
@@ -139,7 +139,7 @@ def test_the_first_line_counts_from_the_last_word(monkeypatch, capsys):
     monkeypatch.setattr(progress.START_UP, "end", lambda: 4.9)
     with running("critical depth"):
         time.sleep(0.4)
-    assert "critical depth: 0 s so far" in capsys.readouterr().err
+    assert "critical depth ..." in capsys.readouterr().err
 
 
 def test_another_part_counts_and_is_timed_anew(clock):
@@ -230,7 +230,7 @@ def test_lines_where_there_is_no_terminal(monkeypatch, capsys):
         work(3, 4)
         time.sleep(0.2)
     printed = capsys.readouterr().err
-    assert "critical depth: 0 s so far" in printed
+    assert "critical depth ..." in printed
     assert "another part: 3 of 4 (75%)" in printed
 
 
@@ -280,3 +280,15 @@ def test_elapsed_time_goes_on_from_line_to_line():
     assert elapsed_in_words(47.2) == "47 s"
     assert elapsed_in_words(107.0) == "1 min 47 s"
     assert elapsed_in_words(122.0) == "2 min 2 s"
+
+
+def test_a_part_that_has_just_begun_has_no_time():
+    """Lines ended with "0 s so far"."""
+    now = [0.0]
+    work = RunningWork("machine", clock=lambda: now[0])
+    now[0] = 3.0
+    work.begin("critical depth")
+    now[0] = 3.2
+    assert work.line() == "critical depth ..."
+    now[0] = 6.0
+    assert work.line() == "critical depth: 3 s so far"
