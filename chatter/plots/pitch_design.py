@@ -61,7 +61,7 @@ def draw_families(axes: Axes, found: PitchResult) -> None:
             axes.axvline(difference, color=colour, linewidth=1.2, linestyle=":", label=label)
     axes.axhline(
         found.best.lowest_limit * 1e3, color=style.BLUE, linewidth=1.0, linestyle="--",
-        label="best found, at the finer speeds",
+        label="best found, between the speeds too",
     )  # fmt: skip
     axes.set(ylim=(0.0, None), xlabel="difference between neighbouring pitch angles [deg]")
     axes.set_ylabel("lowest critical depth [mm]")
