@@ -40,11 +40,14 @@ from dynamics.reduction.modal_truncation import state_space, truncated, undamped
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
+from eigenvalues import Eigenvalue, eigenvalues, most_damped  # noqa: E402
 from shaker import ShakerTest, picture_of_shaker, shaken  # noqa: E402
 
 GAINS = (30.0, 15.0, 7.5)  # N m s/rad, published
 LEVELS = (25.0, 250.0, 500.0)  # N; 250 N published
 PITCH = 0.040  # m, published
+#: lines from which the second mode in motion is told, Hz
+AROUND_SECOND = (28.0, 125.0)
 TORQUE_CONSTANT = 1.5  # N m/A, chosen
 LOW_PASS = LowPass(40.0)
 BRAKES = {"X": "brake", "Y": "brake", "Z": "brake"}
@@ -150,9 +153,9 @@ def repositioned_findings(machine: MachineFile) -> list[Finding]:
     ]  # fmt: skip
 
 
-def level_at(curve: FrfCurve, frequency: float) -> float:
+def level_at(curve: FrfCurve, frequency: float, tested: bool = False) -> float:
     """Receptance at a frequency, nm/N."""
-    frf = curve.harmonic
+    frf = curve.tested if tested else curve.harmonic
     return 1e9 * float(np.interp(frequency, frf.frequency, np.abs(frf.values)))
 
 
@@ -179,20 +182,42 @@ def control_findings(states: list[FrfCurve]) -> list[Finding]:
 
 
 def gain_findings(moving: dict[float, FrfCurve]) -> list[Finding]:
-    """First two structural modes in motion at 100 mm/min."""
+    """First two structural modes in motion at 100 mm/min.
+
+    The second is that at 75 Hz of Figure 8, damped by the loop so that it is hardly a peak beside
+    the next one at 92 Hz: it is told by its eigenvalue, and the response there.
+    """
     findings = []
-    for order, about in (("first", 38.0), ("second", 90.0)):
-        for what, key, unit, factor, published in (
-            ("amplitude", "magnitude", "nm/N", 1e9, "falls as K_pn falls"),
-            ("frequency", "frequency_Hz", "Hz", 1.0, "rises as K_pn falls"),
-        ):
-            for way, tested in (("linearised", False), ("chirp of 250 N", True)):
-                values = [factor * peak_near(moving[g], about, tested)[key] for g in GAINS]
-                text = ", ".join(f"{value:.1f}" for value in values) + f" {unit}"
-                name = f"{order} mode, K_pn 30, 15, 7.5: {what}, {way}"
-                kind = SELECTED if order == "first" else PREDICTED
-                findings.append(Finding(name, published, text, "", "Figure 10", kind))
+    for way, tested in (("linearised", False), ("chirp of 250 N", True)):
+        first = [peak_near(moving[gain], 38.0, tested) for gain in GAINS]
+        second = [second_mode(moving[gain], tested) for gain in GAINS]
+        rows = (
+            ("first", "amplitude", [1e9 * one["magnitude"] for one in first], SELECTED),
+            ("first", "frequency", [one["frequency_Hz"] for one in first], SELECTED),
+            (
+                "second",
+                "amplitude",
+                [
+                    level_at(moving[gain], one.frequency, tested)
+                    for gain, one in zip(GAINS, second, strict=True)
+                ],
+                PREDICTED,
+            ),
+            ("second", "frequency", [one.frequency for one in second], PREDICTED),
+        )
+        for order, what, values, kind in rows:
+            trend, unit = ("falls", "nm/N") if what == "amplitude" else ("rises", "Hz")
+            text = ", ".join(f"{value:.1f}" for value in values) + f" {unit}"
+            name = f"{order} mode, K_pn 30, 15, 7.5: {what}, {way}"
+            findings.append(Finding(name, f"{trend} as K_pn falls", text, "", "Figure 10", kind))
     return findings
+
+
+def second_mode(curve: FrfCurve, tested: bool = False) -> Eigenvalue:
+    """Eigenvalue of the second mode in motion: of those from 70 to 95 Hz the one the loop damps."""
+    frf = curve.tested if tested else curve.harmonic
+    inside = (frf.frequency > AROUND_SECOND[0]) & (frf.frequency < AROUND_SECOND[1])
+    return most_damped(eigenvalues(frf.frequency[inside], frf.values[inside]), 70.0, 95.0)
 
 
 def shaker_findings(shaker: ShakerTest, ideal: FrfCurve) -> list[Finding]:

@@ -74,6 +74,33 @@ def test_higher_velocity_gain_raises_the_first_mode_and_lowers_its_frequency(mac
     assert frequencies[0] < frequencies[1] < frequencies[2]
 
 
+def test_lower_velocity_gain_raises_the_eigenvalue_of_the_second_mode(machine):
+    found = example_module("machine-drive-control", "eigenvalues")
+    key = "axis.X.control.velocity.proportional_gain"
+    lines = np.linspace(28.0, 125.0, 400)
+    second = []
+    for gain in (30.0, 15.0, 7.5):
+        state = assembled_machine(machine.patch({key: gain}), {}, S2)
+        row = state.structure.port("tool", np.array([1.0, 0.0, 0.0]), "work")
+        values = linearised_frf(state, machine.step, lines, row, row, {"X": 0.1 / 60.0})
+        second.append(found.most_damped(found.eigenvalues(lines, values), 70.0, 95.0))
+    frequencies = [one.frequency for one in second]
+    assert frequencies[0] < frequencies[1] - 2.0
+    assert frequencies[1] < frequencies[2]
+
+
+def test_eigenvalues_of_a_response_in_closed_form():
+    """Three vibrations, one of them damped until it is no peak beside the next."""
+    found = example_module("machine-drive-control", "eigenvalues")
+    frequency, damping = np.array([40.0, 90.0, 92.0]), np.array([0.03, 0.12, 0.015])
+    lines = np.linspace(28.0, 125.0, 400)
+    s, w = 2j * np.pi * lines[:, None], 2.0 * np.pi * frequency
+    values = np.sum(1.0 / (s**2 + 2.0 * damping * w * s + w**2), axis=1) + 1e-6
+    told = np.array(found.eigenvalues(lines, values, 6))
+    np.testing.assert_allclose(told, np.column_stack([frequency, damping]), rtol=1e-8)
+    assert found.most_damped([found.Eigenvalue(*one) for one in told], 70.0, 95.0)[0] > 89.0
+
+
 def test_modal_state_space_below_200_hz_is_the_full_model(machine):
     full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
     modal = truncated(full, undamped_modes(full, 200.0), residual_at=("tool", "work"))
