@@ -19,6 +19,8 @@ _SLOW_RATE = 200.0
 #: names of a time without a unit, which is in s
 _TIMES = ("time", "t")
 _EXAMPLE = "time [s],force [N],acceleration [m/s^2]"
+#: time between samples below which the unit of the time is wrong, s
+_SHORTEST_STEP = 1e-12
 #: share of a sampling interval by which a time stamp may lie off the even grid, beyond rounding
 _TIME_JITTER = 0.1
 
@@ -260,6 +262,11 @@ def _even_sampling(path: Path, table: Table, index: int, factor: float) -> tuple
         raise MeasurementError(
             f"{path}: {table.where(row + 1)}: time steps by {steps[row]:.6g} where the "
             f"others step by {interval:.6g}; samples must be evenly spaced without gaps"
+        )
+    if interval * factor < _SHORTEST_STEP:
+        raise MeasurementError(
+            f"{path}: times step by {interval * factor:.3g} s, and no recorder samples so fast: is "
+            "the unit of the time right?"
         )
     return float(time[0]) * factor, _rate(time, rounding) / factor
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.arrays import Array
-from dynamics.frf.container import MeasurementError, Point
+from dynamics.frf.container import LARGEST, MeasurementError, Point
 
 if TYPE_CHECKING:
     from chatter.io.formats.units import Channel
@@ -60,7 +60,8 @@ class Table:
     def numbers(self, index: int) -> Array:
         """Cells of a column as finite numbers.
 
-        MeasurementError if a cell is not a finite number; the message names file and line.
+        MeasurementError if a cell is not a finite number, or one that no instrument records; the
+        message names file and line.
         """
         cells = self.columns[index].cells
         try:
@@ -73,6 +74,13 @@ class Table:
             finite = "finite " if is_number(cell) else ""
             raise MeasurementError(
                 f"{self.path}: {self.where(int(wrong[0]))}: {cell[:40]!r} is not a {finite}number"
+            )
+        far = np.abs(values) > LARGEST
+        if np.any(far):
+            row = int(np.argmax(far))
+            raise MeasurementError(
+                f"{self.path}: {self.where(row)}: {values[row]:g} is no measured number (at most "
+                f"{LARGEST:g})"
             )
         return values
 

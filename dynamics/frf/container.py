@@ -24,6 +24,9 @@ QUANTITY_OF_MOTION: dict[str, Quantity] = {
 #: SI unit of each quantity
 QUANTITY_UNIT: dict[str, str] = {"receptance": "m/N", "mobility": "m/s/N", "accelerance": "m/s^2/N"}
 
+#: magnitude beyond which a number of a file was not measured: it is damaged, or marks a gap
+LARGEST = 1e30
+
 
 class MeasurementError(ValueError):
     """A measured file or signal that cannot be used; the message says which and why."""
@@ -69,6 +72,12 @@ class Frf:
         if not np.all(np.isfinite(frequency)) or not np.all(np.isfinite(values)):
             line = int(np.argmin(np.isfinite(frequency) & np.isfinite(values)))
             raise MeasurementError(f"{where}: line {line + 1} of the FRF is not a finite number")
+        if np.any(far := (np.abs(values) > LARGEST) | (np.abs(frequency) > LARGEST)):
+            line = int(np.argmax(far))
+            raise MeasurementError(
+                f"{where}: line {line + 1} of the FRF, {np.abs(values[line]):g} at "
+                f"{frequency[line]:g} Hz, is no measured number (at most {LARGEST:g})"
+            )
         if np.any(np.diff(frequency) <= 0.0):
             line = int(np.argmax(np.diff(frequency) <= 0.0))
             raise MeasurementError(

@@ -74,6 +74,29 @@ def candidates(measurement: Measurement) -> list[Effect]:
     ]
 
 
+def other_variants(effect: Effect, measurement: Measurement) -> list[Effect]:
+    """Variants of an effect, but for itself, that may be missing in a measurement."""
+    return [
+        one
+        for one in candidates(measurement)
+        if one.name == effect.name and not _is_same_form(one, effect)
+    ]
+
+
+def richer_forms(effect: Effect, measurement: Measurement) -> list[Effect]:
+    """Forms of an effect with more parameters that may be missing in a measurement."""
+    return [
+        one
+        for one in effect.richer
+        if type(one) is not type(effect) and one.applies(measurement.of_kinds(one.kinds))
+    ]
+
+
+def _is_same_form(one: Effect, other: Effect) -> bool:
+    """Whether two effects are the same member of a family."""
+    return type(one) is type(other) and vars(one) == vars(other)
+
+
 def _shows(effect: Effect, measurement: Measurement) -> bool:
     """Whether an effect shows in a measurement of any of its kinds."""
     return any(kind in effect.kinds for kind in measurement.kinds)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,8 +17,9 @@ from chatter.explain.criteria import (
     PAIRED,
 )
 from chatter.explain.effects.effect import Effect
+from chatter.explain.effects.effect_list import other_variants, richer_forms
 from chatter.explain.fitting import Fit
-from chatter.explain.measurement import Run
+from chatter.explain.measurement import Measurement, Run
 from chatter.explain.selection.candidates import (
     Candidate,
     Progress,
@@ -38,6 +39,8 @@ from chatter.explain.selection.split import Split, split_runs
 
 #: times that members of families give way to richer ones
 _MOST_RICHER = 2
+#: other forms of an effect that may be missing in a measurement
+Forms = Callable[[Effect, Measurement], list[Effect]]
 
 
 class Path(NamedTuple):
@@ -183,26 +186,27 @@ def tried_again(path: Path, split: Split) -> Path:
     return Path(kept, problem, now)
 
 
-def richer(path: Path, split: Split, progress: Progress) -> Path:
-    """Put other members of families in the place of those added, as long as the data ask."""
+def in_other_forms(path: Path, split: Split, progress: Progress) -> Path:
+    """Put other members of families in the place of those added, as long as the data ask.
+
+    Which variant did best was asked when the effects added later were not there.
+    """
+    path = _in_other_forms(path, split, other_variants, progress)
     for _ in range(_MOST_RICHER):
-        further = _one_richer(path, split, progress)
-        if further is path or further.over_noise(split.holdout) < NO_RESIDUAL:
-            return further
+        if path.over_noise(split.holdout) < NO_RESIDUAL:
+            break
+        further = _in_other_forms(path, split, richer_forms, progress)
+        if further is path:
+            break
         path = further
     return path
 
 
-def _one_richer(path: Path, split: Split, progress: Progress) -> Path:
-    """Path with the next richer member of each family; itself where the data ask for none."""
+def _in_other_forms(path: Path, split: Split, forms_of: Forms, progress: Progress) -> Path:
+    """Path with the best other member of each family; itself where the data ask for none."""
     for index, stage in enumerate(path.stages):
         effect = stage.best.effect
-        measurement = path.problem.measurement
-        others = [
-            one
-            for one in effect.richer
-            if type(one) is not type(effect) and one.applies(measurement.of_kinds(one.kinds))
-        ]
+        others = forms_of(effect, path.problem.measurement)
         if not others:
             continue
         progress(f"looking at other forms of {effect.name}", 0.88)

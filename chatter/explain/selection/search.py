@@ -18,7 +18,14 @@ from chatter.explain.selection.established import (
     stages_of_kept_effects,
 )
 from chatter.explain.selection.other_starts import fit_from_elsewhere
-from chatter.explain.selection.path import Path, best_path, filtered, gone_on, richer, tried_again
+from chatter.explain.selection.path import (
+    Path,
+    best_path,
+    filtered,
+    gone_on,
+    in_other_forms,
+    tried_again,
+)
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
 
@@ -122,9 +129,9 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     path, split = _gone_on_filtered(path, split, progress)
     path, split, final = _to_all_runs(path, split, progress)
     if path.stages and not is_at_noise(path.problem, final):
-        before, path = path, richer(path, split, progress)
+        before, path = path, in_other_forms(path, split, progress)
         if path is not before and len(path.stages) > 1:
-            # another may have stood for what the richer member holds
+            # another may have stood for what the other member holds
             path = tried_again(path, split)
         final = _of_all_runs(path)
     helping: list[Stage] = []
