@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import loads
+from chatter.explain.effects import effect_list
 from chatter.explain.effects.axis import Asymmetry, Offset, QuadraticDrag
 from chatter.explain.effects.effect import free
 from chatter.explain.fitting import Parameter
@@ -156,6 +157,31 @@ def test_an_effect_that_nobody_could_notice_is_not_named_beside_another():
     found = found_in(measured(shapes_of, (3.0, 0.05, 0.0)))
     assert found.effect_names == ("asymmetry",)
     assert found.is_at_noise
+
+
+class AsymmetryOfDrag(Asymmetry):
+    """Another variant of the asymmetry, which acts as the quadratic drag does."""
+
+    def patch(self, case, values):
+        return {"axis.quadratic_drag": float(values["asymmetry"])}
+
+
+def test_another_variant_takes_the_place_of_one_that_stood_for_two(monkeypatch):
+    """The first chosen is like the sum of two effects, of which its other variant is one."""
+
+    def shapes_of(random):
+        one, other, rest = random.standard_normal((3, SAMPLES))
+        return one + 0.5 * other + 0.5 * rest, other, one
+
+    family = [Asymmetry(), AsymmetryOfDrag()]
+    monkeypatch.setattr(candidates, "candidates", lambda measurement: [*family, Offset()])
+    monkeypatch.setattr(effect_list, "candidates", lambda measurement: [*family, Offset()])
+    found = found_in(measured(shapes_of, (0.0, 5.0, 5.0)))
+    assert {type(one) for one in found.problem.effects} == {Offset, AsymmetryOfDrag}
+    assert found.is_at_noise
+    assert found.final.by_name == pytest.approx(
+        {"asymmetry.asymmetry": 5.0, "offset.offset": 5.0}, abs=0.05
+    )
 
 
 def test_what_is_found_is_kept_beside_something_else():
