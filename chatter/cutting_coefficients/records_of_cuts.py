@@ -6,6 +6,7 @@ from pathlib import Path
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
+from chatter.description.given_path import path_given
 from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
@@ -26,7 +27,7 @@ def read_records(
     InputError
         If it cannot be read, or nothing tells which cut it is of.
     """
-    path = Path(records)
+    path = path_given(records, "a measurement folder or a record")
     refuse_other_file(path, "measurement")
     if path.is_dir() and not (path / "measurement.toml").is_file():
         raise InputError(_what_to_write(path))

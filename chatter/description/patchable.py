@@ -15,6 +15,7 @@ from chatter.description.bare_numbers import give_bare_numbers_their_unit, refus
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
+from chatter.description.given_path import path_given
 from chatter.description.kinds_of_files import refuse_other_kind, with_article
 from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
@@ -173,7 +174,7 @@ class Description(Section):
         InputError
             If the file cannot be read or describes nothing; all problems found are in it.
         """
-        path = Path(path)
+        path = path_given(path, f"{with_article(cls.NOUN)} file")
         text = read_text(path, cls.NOUN)
         document = parse_document(text, str(path), cls.NOUN)
         refuse_bare_numbers(cls, document.unwrap(), str(path))

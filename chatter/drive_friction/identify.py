@@ -10,6 +10,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
+from chatter.description.given_path import paths_given
 from chatter.drive_friction.drive_records import DriveRecords, DriveSettings, drive_records
 from chatter.drive_friction.friction_laws import LAWS, FitSettings, FittedFriction
 from chatter.drive_friction.result import DriveFriction, TriedFriction
@@ -83,7 +84,7 @@ def friction(
     if isinstance(files, DriveRecords):
         given = files
     else:
-        given = drive_records([files] if isinstance(files, (str, Path)) else files, drive)
+        given = drive_records(paths_given(files, "a record of a drive"), drive)
     records = given.records
     settings = _settings(records, inertia, low_pass)
     tried = []

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.given_path import path_given
 from chatter.explain.checking import Checked, checked
 from chatter.explain.criteria import MOST_PROBABLE, MOST_PROBABLE_BESIDE_UNKNOWN, OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
@@ -486,7 +487,7 @@ def as_measurement(
 ) -> Measurement:
     """Return a measurement as it is, or read its folder; with another case declared, if given."""
     if not isinstance(given, Measurement):
-        return read_measurement(given, case)
+        return read_measurement(path_given(given, "a measurement folder"), case)
     if case is None:
         return given
     return given.with_case(case if isinstance(case, Case) else Case.from_file(case))

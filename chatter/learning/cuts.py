@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.given_path import path_given
 from chatter.description.kinds_of_files import refuse_other_file
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
@@ -36,7 +37,7 @@ def read_cuts(path: str | Path, case: Case) -> Measurement:
     differ from the case; `record`, a number n, where the vibration of a stable cut lies in
     record-n.csv beside the table. InputError if it is missing or has no such column.
     """
-    path = Path(path)
+    path = path_given(path, "a table of cuts")
     refuse_other_file(path, "measurement")
     if path.is_dir() or path.suffix == ".toml":
         measurement = read_measurement(path, case)

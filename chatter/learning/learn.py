@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case, load
+from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import rpm
@@ -272,7 +273,7 @@ def learn(
     OSError
         If they cannot be kept.
     """
-    declared = case if isinstance(case, Case) else load(case)
+    declared = described_or_read(case, Case, load)
     _check(aim, risk, particles)
     measurement = cuts if isinstance(cuts, Measurement) else read_cuts(cuts, declared)
     problem = problem_of(measurement, folder)

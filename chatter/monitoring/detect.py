@@ -7,7 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from chatter.description.case import Case, load
+from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
+from chatter.description.given_path import path_given
 from chatter.description.units import QuantityError, parse
 from chatter.detection.spectral.frame_evidence import evidence_of
 from chatter.detection.spectral.recording import Recording
@@ -66,12 +68,13 @@ def detect(
     InputError
         If the file cannot be read or used, or a value is wrong.
     """
-    if isinstance(case, (str, Path)):
-        case = load(case)
+    if case is not None:
+        case = described_or_read(case, Case, load)
     given = spindle_frequency(spindle_speed, case)
     teeth = teeth_of(teeth, case)
     if not isinstance(recording, Recording):
         rate = sampling_frequency(sampling_rate)
+        recording = path_given(recording, "a recording")
         recording = read_recording(recording, channels, rate, columns)
     evidence = evidence_of(recording, given, teeth)
     segments = tuple(judged(evidence))

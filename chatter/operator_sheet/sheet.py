@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from chatter.description.case import Case, load
+from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.whole_files import write_whole
@@ -80,13 +81,13 @@ def sheet(
     InputError
         If a case lacks something, or none is given.
     """
-    single = isinstance(cases, (str, Path, Case))
+    single = isinstance(cases, (str, Path)) or not isinstance(cases, Sequence)
     given = [cases] if single else list(cases)
     if not given:
         raise InputError("no case is given; a sheet is of one case or more")
     found = []
     for place, one in enumerate(given, start=1):
-        case = one if isinstance(one, Case) else load(one)
+        case = described_or_read(one, Case, load)
         which = f"{case.name} ({place} of {len(given)}): " if len(given) > 1 else ""
         found.append(_cuts(case, _PartsOfCase(progress, which)))
     return Sheet(tuple(found))

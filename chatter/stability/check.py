@@ -364,7 +364,8 @@ def check(
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
-    begin(progress, "critical depth at this speed")
+    if case.on_machine:
+        begin(progress, "critical depth at this speed")
     limit = chosen.limits(model, speeds, depths, steps, progress)
     begin(progress, "stability of the cut itself")
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))

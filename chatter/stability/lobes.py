@@ -61,7 +61,8 @@ def lobes(
     if case.on_machine:
         begin(progress, "machine: structure, frictions and loops")
     model = milling_model(case)
-    begin(progress, "stability limits at all speeds")
+    if case.on_machine:
+        begin(progress, "stability limits at all speeds")
     speeds = spindle_speeds(case)
     zero_order = zero_order_of(model, speeds)
     max_depth = maximum_depth(case, zero_order)

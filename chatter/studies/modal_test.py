@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.compile.measured_frf import with_direction, with_magnitudes
 from chatter.description.errors import InputError
+from chatter.description.given_path import paths_given
 from chatter.io.formats.format_list import read_frfs
 from chatter.io.hammer_records import (
     HammerFolder,
@@ -206,7 +207,7 @@ def modes(
     InputError
         If the files cannot be read or used.
     """
-    given = [Path(path) for path in ([paths] if isinstance(paths, (str, Path)) else paths)]
+    given = paths_given(paths, "an FRF file or a hammer record")
     if side not in ("tool", "workpiece"):
         raise InputError(f'side "{side}" is not known; there are "tool" and "workpiece"')
     if direction is not None and direction not in ("x", "y", "z"):

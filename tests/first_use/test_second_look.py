@@ -348,3 +348,28 @@ def test_a_bound_is_told_only_where_it_differs():
     assert "certain" not in " ".join(chatter.whatif(plain, widths, "critical depth").sentences())
     told = " ".join(chatter.whatif(cut(), widths, "critical depth").sentences())
     assert "depth stable for certain" in told
+
+
+@pytest.mark.parametrize(
+    ("call", "further", "required"),
+    [
+        ("load", (), "the path of a case file"),
+        ("load_machine", (), "the path of a machine file"),
+        ("assemble", (), "the path of an assembly file"),
+        ("coefficients", (), "the path of a measurement folder or a record"),
+        ("compare", (), "the path of a measurement folder"),
+        ("explain", (), "the path of a measurement folder"),
+        ("detect", (), "the path of a recording"),
+        ("friction", (), "the path of a record of a drive"),
+        ("modes", (), "the path of an FRF file or a hammer record"),
+        ("learn", ("cuts.csv",), "a case or the path of its file"),
+        ("sheet", (), "a case or the path of its file"),
+        ("export", (), "a machine or the path of its file"),
+        ("optimum", (), "a case or the path of its file"),
+    ],
+)
+def test_what_is_no_path_is_named(call, further, required):
+    """ "expected str, bytes or os.PathLike object, not int"."""
+    with pytest.raises(InputError) as found:
+        getattr(chatter, call)(5, *further)
+    assert str(found.value) == f"{required} is required; 5 is given"

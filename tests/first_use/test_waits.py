@@ -54,10 +54,10 @@ def test_what_follows_the_limits_of_an_inclined_tool_is_named_and_counted():
     depths = {"to": "2 mm", "count": 12}
     chatter.lobes(inclined_ball(speeds=speeds, depths=depths), progress=parts)
     assert parts.names[1:] == [
-        "stability limits at all speeds", "what linear methods leave out",
-        "limit at the speed of the cut", "lowest limit between the speeds",
+        "what linear methods leave out", "limit at the speed of the cut",
+        "lowest limit between the speeds",
     ]  # fmt: skip
-    for name in (parts.names[1], *parts.names[3:]):
+    for name in (parts.names[0], *parts.names[2:]):
         reports = parts.reports[name]
         assert len(reports) > 3, name
         assert all(0 <= done <= total for done, total in reports)

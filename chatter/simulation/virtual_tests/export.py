@@ -14,7 +14,8 @@ import scipy
 from chatter.compile.linearised_friction import closed_backlashes
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import StateSection, parse_tested_point
-from chatter.description.machine.machine_file import MachineFile, load_machine
+from chatter.description.machine.machine_file import MachineFile
+from chatter.description.machine.machine_or_path import takes_machine_or_path
 from chatter.description.whole_files import write_whole
 from chatter.io.result_files import as_json, short_repr, write_results
 from chatter.simulation.virtual_tests.from_file import in_state, is_rotation, row_of_point
@@ -100,8 +101,9 @@ class StateSpaceExport:
         return [*written, folder / "state_space.npz", folder / "state_space.mat"]
 
 
+@takes_machine_or_path
 def export(
-    machine: str | Path | MachineFile,
+    machine: MachineFile,
     inputs: Sequence[str] = (),
     outputs: Sequence[str] = (),
     state: StateSection | None = None,
@@ -110,7 +112,7 @@ def export(
 
     Parameters
     ----------
-    machine : path or MachineFile
+    machine : MachineFile, or the path of its file
     inputs, outputs : sequence of str
         Places such as ``"motor:Y"``, ``"table:y"`` or ``"tool/work:x"``. By default the motors
         under control and the tool against the workpiece along x, y and z, both ways.
@@ -122,7 +124,7 @@ def export(
     InputError
         If there is no such place, or the machine names none by itself.
     """
-    file = machine if isinstance(machine, MachineFile) else load_machine(machine)
+    file = machine
     assembled = in_state(file, state or StateSection())
     usual = _usual(file, [drive.axis for drive in assembled.drives])
     names = (tuple(inputs) or usual, tuple(outputs) or usual)
