@@ -86,6 +86,11 @@ def name_of_row(
         return name
     if len(graded) == 1 and rows[graded[0]].is_grade(name):
         return graded[0]
+    if len(graded) > 1:
+        raise ValueError(
+            f"{formatted(name)} is a grade of {len(graded)} rows; material.condition, some words of "
+            f"it, or the name of a row chooses: {_choices(graded, rows)}"
+        )
     raise ValueError(
         f"{formatted(name)} is not in the table of materials; {_hint(name, rows, graded)}"
         f"`chatter materials` lists all {len(rows)}, `chatter materials WORD` searches"
@@ -118,12 +123,7 @@ def _choices(names: Iterable[str], rows: Mapping[str, MaterialRow]) -> str:
 
 
 def _hint(name: str, rows: Mapping[str, MaterialRow], graded: list[str]) -> str:
-    """Rows that may be meant; a grade is in one row for each condition of it."""
-    if len(graded) > 1:
-        return (
-            f"it is a grade of {len(graded)} rows, of which material.condition chooses, or name by "
-            f"the name of a row: {_choices(graded, rows)}; "
-        )
+    """Rows that may be meant."""
     misspelt = difflib.get_close_matches(name[:60], rows, n=1, cutoff=_MISSPELT)
     family = "" if graded or misspelt else words_of_family(name, rows)
     if family:
