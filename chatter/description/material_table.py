@@ -88,8 +88,8 @@ def name_of_row(
         return graded[0]
     if len(graded) > 1:
         raise ValueError(
-            f"{formatted(name)} is a grade of {len(graded)} rows; material.condition, some words of "
-            f"it, or the name of a row chooses: {_choices(graded, rows)}"
+            f"{formatted(name)} is a grade of {len(graded)} rows; material.condition, some words "
+            f"of it, or the name of a row chooses: {_choices(graded, rows)}"
         )
     raise ValueError(
         f"{formatted(name)} is not in the table of materials; {_hint(name, rows, graded)}"
