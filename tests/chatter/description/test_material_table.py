@@ -166,9 +166,7 @@ def test_a_grade_of_one_row_is_that_row(grade, group):
 
 @pytest.mark.parametrize("word", ["steel", "silicon", "grade", "alloy"])
 def test_a_word_of_many_grades_is_none(word):
-    with pytest.raises(
-        ValueError, match=r"is not in the table|is a grade of \d+ rows"
-    ):
+    with pytest.raises(ValueError, match=r"is not in the table|is a grade of \d+ rows"):
         row_named(word)
 
 
