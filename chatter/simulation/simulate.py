@@ -157,21 +157,27 @@ def through_resonance(
 ) -> NDArray[np.float64]:
     """Answer (n, k) of m''/w^2 + 2 D m'/w + m = f to forces (n, k) that are linear in steps.
 
-    Natural frequency, Hz, damping D and step, s; the sensor is at rest before. Exact for a force
-    that varies linearly from row to row.
+    Natural frequency, Hz, damping D and step, s; the sensor is at rest at the first row, where a
+    force may set in at once. Exact for a force that varies linearly from row to row.
     """
     # slow to import, and few cases have a dynamometer
     from scipy.signal import lfilter
 
-    numerator, denominator = _resonance_filter(frequency, damping, step)
-    return lfilter(numerator, denominator, force, axis=0)
+    ramped, held, denominator = _resonance_filter(frequency, damping, step)
+    # what is there at the first row is held from there on, and did not rise to it before
+    first = force[:1]
+    rest = lfilter(ramped, denominator, force - first, axis=0)
+    return rest + first * lfilter(held, denominator, np.ones((len(force), 1)), axis=0)
 
 
 @lru_cache(_FILTERS_KEPT)
 def _resonance_filter(
     frequency: float, damping: float, step: float
-) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Numerator and denominator of the z transfer of a resonance."""
+) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+    """Numerators of the z transfer of a resonance, and its denominator.
+
+    For a force that is linear in a step, and for one that is held over it.
+    """
     omega = 2.0 * math.pi * frequency
     matrix = omega * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]])
     transition, held, ramp = exact_step(matrix, np.array([[0.0], [omega]]), step)
@@ -181,8 +187,9 @@ def _resonance_filter(
     ahead, behind = ramp, held - ramp
     first = [0.0, ahead[0], transition[0, 1] * ahead[1] - transition[1, 1] * ahead[0]]
     last = [0.0, behind[0], transition[0, 1] * behind[1] - transition[1, 1] * behind[0]]
-    numerator = (first[1], first[2] + last[1], last[2])
-    return numerator, (1.0, -trace, determinant)
+    ramped = (first[1], first[2] + last[1], last[2])
+    constant = (0.0, held[0], transition[0, 1] * held[1] - transition[1, 1] * held[0])
+    return ramped, constant, (1.0, -trace, determinant)
 
 
 #: port of the rotation of the tool

@@ -46,6 +46,22 @@ def test_a_sine_through_a_resonance_has_its_amplitude_and_phase():
     assert measured[settled] == pytest.approx(expected[settled], abs=2e-4)
 
 
+def test_a_force_that_sets_in_at_once_meets_a_sensor_at_rest():
+    """A step and a ramp from the first row on, against their closed forms."""
+    step, natural, damping = 4e-5, 1600.0, 0.03
+    time = step * np.arange(500)
+    omega = 2.0 * np.pi * natural
+    damped, decay = omega * np.sqrt(1.0 - damping**2), np.exp(-damping * omega * time)
+    cosine, sine = np.cos(damped * time), np.sin(damped * time)
+    of_step = 1.0 - decay * (cosine + damping * omega / damped * sine)
+    lag = 2.0 * damping / omega
+    of_ramp = time - lag + decay * (lag * cosine + (damping * omega * lag - 1.0) / damped * sine)
+    force = np.column_stack([np.ones(500), 3.0 + 2e3 * time])
+    measured = through_resonance(force, natural, damping, step)
+    assert measured[:, 0] == pytest.approx(of_step, abs=1e-9)
+    assert measured[:, 1] == pytest.approx(3.0 * of_step + 2e3 * of_ramp, abs=1e-9)
+
+
 def test_a_stiff_sensor_shows_the_force_itself():
     rng = np.random.default_rng(1)
     force = np.cumsum(rng.normal(size=(400, 3)), axis=0) * 1e-2
