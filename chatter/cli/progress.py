@@ -25,7 +25,7 @@ from chatter.report.console import MESSAGES, print_message
 #: s without a word after which a line is printed where there is no terminal to draw a bar on
 FIRST_LINE = 2.0
 #: s from line to line
-NEXT_LINE = 15.0
+NEXT_LINE = 2.0
 #: s of work from which on its duration is announced
 LONG = 60.0
 #: s of work before it ends within which its duration is no news
@@ -201,7 +201,7 @@ def in_words(seconds: float) -> str:
 
 
 def elapsed_in_words(seconds: float) -> str:
-    """Duration to the second, so that each of two lines a quarter of a minute apart is news."""
+    """Duration to the second, so that each of two lines some seconds apart is news."""
     if seconds < 90.0:
         return in_words(seconds)
     minutes, rest = divmod(round(seconds), 60)
@@ -212,8 +212,8 @@ def elapsed_in_words(seconds: float) -> str:
 def progress_bar(description: str, driver: object | None = None) -> Iterator[RunningWork]:
     """Announce what the first use takes, and show on stderr what is being done and how far.
 
-    A bar on a terminal, else a line after two seconds and one every quarter of a minute. Yields a
-    function of (done, total); `driver` is as for `announce_compilation`.
+    A bar on a terminal, else a line every two seconds. Yields a function of (done, total); `driver`
+    is as for `announce_compilation`.
     """
     announce_compilation(driver)
     from chatter.first_steps.compiling import is_compiling
@@ -268,11 +268,16 @@ def _on_terminal(work: RunningWork, ended: threading.Event) -> None:
 def _in_lines(silent: float, work: RunningWork, ended: threading.Event) -> None:
     """Print lines on work before which nothing was said for so long, s."""
     due = time.monotonic() + max(FIRST_LINE - silent, 0.0)
+    before = ""
     while not ended.wait(min(_LOOKED_EVERY, max(due - time.monotonic(), 0.0))):
         sentence = work.announcement()
         if sentence is None and time.monotonic() < due:
             continue
-        print_message(sentence or work.line())
+        line = sentence or work.line()
+        # the same line twice would say that nothing goes on
+        later = f"{line}, {elapsed_in_words(work.elapsed)} so far"
+        print_message(later if line == before else line)
+        before = line
         due = time.monotonic() + NEXT_LINE
 
 

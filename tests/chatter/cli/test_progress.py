@@ -234,6 +234,21 @@ def test_lines_where_there_is_no_terminal(monkeypatch, capsys):
     assert "another part: 3 of 4 (75%)" in printed
 
 
+def test_no_two_lines_are_alike_and_none_is_later_than_two_seconds(monkeypatch, capsys):
+    assert progress.FIRST_LINE <= 2.0
+    assert progress.NEXT_LINE <= 2.0
+    monkeypatch.setattr(progress, "FIRST_LINE", 0.5)
+    monkeypatch.setattr(progress, "NEXT_LINE", 0.5)
+    with running("candidates") as work:
+        time.sleep(0.6)
+        work(3, 4)
+        time.sleep(2.2)
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) >= 4
+    assert all("candidates" in line for line in lines)
+    assert any(line.startswith("candidates: 3 of 4 (75%), ") and "so far" in line for line in lines)
+
+
 def test_short_work_prints_nothing(capsys):
     with running("critical depth") as work:
         work(1, 2)
