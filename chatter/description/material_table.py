@@ -88,8 +88,8 @@ def name_of_row(
         return graded[0]
     if len(graded) > 1:
         raise ValueError(
-            f"{formatted(name)} is a grade of {len(graded)} rows; material.condition, some words "
-            f"of it, or the name of a row chooses: {_choices(graded, rows)}"
+            f"{formatted(name)} is a grade of {len(graded)} rows; the name of a row chooses, or "
+            f"material.condition with some words of it: {_choices(graded, rows)}"
         )
     raise ValueError(
         f"{formatted(name)} is not in the table of materials; {_hint(name, rows, graded)}"
@@ -115,11 +115,14 @@ def _row_in_condition(
 
 
 def _choices(names: Iterable[str], rows: Mapping[str, MaterialRow]) -> str:
-    """Conditions and names of rows, to choose one."""
-    return ", ".join(
-        f'"{rows[name].condition}" is "{name}"' if rows[name].condition else f'"{name}"'
-        for name in names
-    )
+    """Names of rows, each with what tells it from the others, to choose one."""
+    return ", ".join(f'"{name}" ({_difference(rows[name])})' for name in names)
+
+
+def _difference(row: MaterialRow) -> str:
+    """Condition and tangential coefficient of a row: sources differ where conditions do not."""
+    tangential = f"Ktc {1e-6 * row.cutting[0]:.4g} MPa" if row.cutting[0] else ""
+    return "; ".join(one for one in (row.condition, tangential) if one)
 
 
 def _hint(name: str, rows: Mapping[str, MaterialRow], graded: list[str]) -> str:

@@ -45,6 +45,8 @@ class Material(_Keys):
     @model_validator(mode="before")
     @classmethod
     def _take_named_row(cls, data: Any, info: ValidationInfo) -> Any:
+        if isinstance(data, Mapping) and "name" in data:
+            data = {**data, "name": _as_text(data["name"])}
         row = _row_of(data, info)
         if row is None:
             return data
@@ -72,6 +74,13 @@ class Material(_Keys):
     def force_law(self, helix: float) -> ForceLaw:
         """Force law of an edge inclined by the helix, rad."""
         return self.LAWS[self.law].of(self.values, helix)
+
+
+def _as_text(name: Any) -> Any:
+    """Grade of digits alone as text: 304, or a material number, which has four behind the point."""
+    if isinstance(name, bool) or not isinstance(name, (int, float)):
+        return name
+    return str(name) if isinstance(name, int) else f"{name:.4f}"
 
 
 def _row_of(data: Any, info: ValidationInfo) -> MaterialRow | None:

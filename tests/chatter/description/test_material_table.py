@@ -152,7 +152,9 @@ def test_wrong_tables_are_named(tmp_path):
     ],
 )
 def test_a_grade_is_answered_by_the_rows_of_its_conditions(grade, rows):
-    with pytest.raises(ValueError, match=r"is a grade of [23] rows; material\.condition") as found:
+    with pytest.raises(
+        ValueError, match=r"is a grade of [23] rows; the name of a row chooses"
+    ) as found:
         row_named(grade)
     assert all(row in str(found.value) for row in rows)
 
@@ -188,7 +190,7 @@ def test_a_condition_chooses_among_the_rows_of_a_grade(condition, group):
         (
             "42CrMo4",
             "quenched",
-            'leaves 3 of the rows of "42CrMo4": "quenched and tempered, 930 MPa',
+            'leaves 3 of the rows of "42CrMo4": "low-alloy and cast steel, hardened to 275 HB',
         ),
         ("42CrMo4", "annealed", 'chooses none of the rows of "42CrMo4"'),
         ("ti6al4v", "1050 MPa", "leaves 2"),
@@ -204,3 +206,21 @@ def test_a_condition_that_does_not_choose_says_which_do(grade, condition, told):
 def test_a_condition_without_a_grade_is_refused():
     with pytest.raises(InputError, match="is given without name"):
         loads('[material]\ncondition = "annealed"\nKtc = "1 GPa"\nKrc = "1 GPa"')
+
+
+@pytest.mark.parametrize(
+    ("given", "name"), [("304", "304"), ("1.4301", "1.4301"), ("1.2080", "1.2080")]
+)
+def test_a_grade_of_digits_needs_no_quotes(given, name):
+    """`--set material.name=304` was refused, text in quotes being required."""
+    text = CASE.replace('name = "our steel"\ntable = "materials.toml"', f"name = {given}")
+    if name == "1.2080":
+        text = text.replace(f"name = {given}", f'name = {given}\ncondition = "annealed"')
+    assert loads(text).material.name == name
+
+
+def test_rows_of_one_condition_are_told_apart_by_their_coefficient():
+    with pytest.raises(ValueError, match="the name of a row chooses") as told:
+        name_of_row("Ti6Al4V")
+    assert '(VDI 37)" (1050 MPa; Ktc 1245 MPa)' in str(told.value)
+    assert '(VDI 37, 2017)" (1050 MPa; Ktc 2110 MPa)' in str(told.value)
