@@ -27,7 +27,7 @@ def _warm(name: str) -> Reached:
         command = command_of(name, CASE, f"{folder}/out")
         walls = [taken(command, HERE, bytecode)[0] for _ in range(_TIMES + 1)]
         bare = [taken(["-c", _LOADS[name]], HERE, bytecode)[0] for _ in range(_TIMES)]
-    return Reached(min(walls[1:]), f"python -c '{_LOADS[name].split(',')[0]}': {min(bare):.2f} s")
+    return Reached(min(walls[1:]), f"python -c '{_LOADS[name]}': {min(bare):.2f} s")
 
 
 def _first_use() -> Reached:

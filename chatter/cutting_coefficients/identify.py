@@ -18,6 +18,7 @@ from chatter.cutting_coefficients.varied_cut import with_parts
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement
+from chatter.explain.records.description import FORCE
 
 #: cuts of which each can be left out in turn
 _ENOUGH_CUTS = 3
@@ -65,6 +66,7 @@ def coefficients(
     if not isinstance(records, Measurement):
         records = read_records(records, case, columns)
     records.case.require("tool", "cut")
+    _refuse_unknown_directions(records)
     given = [in_the_cut(records, run) for run in with_parts(records).runs]
     zeroed = all(one.is_zeroed for one in given)
     records, apart = _parted(records.with_runs([one.run for one in given]), hold_out)
@@ -87,6 +89,20 @@ def coefficients(
         kept, error = own, beside
         fits.append(own)
     return Coefficients(records, tuple(means), tuple(fits), kept, error, own, beside, apart, zeroed)
+
+
+def _refuse_unknown_directions(records: Measurement) -> None:
+    """Raise InputError where a force has no direction: mean forces do not tell it."""
+    channels = {} if records.record is None else records.record.channels
+    problems = [
+        f"{records.folder}: channels.{name}.direction: is unknown, and coefficients need it; state "
+        "it in the axes of the case, such as [0, 1, 0]; where its sense alone is unknown, "
+        'sign = "unknown" beside it'
+        for name, one in channels.items()
+        if one.quantity == FORCE and one.direction is None
+    ]
+    if problems:
+        raise InputError(problems)
 
 
 def _is_needed(

@@ -72,6 +72,11 @@ def row_named(
     return rows[name_of_row(name, rows, condition)]
 
 
+def is_in_table(name: str, rows: Mapping[str, MaterialRow]) -> bool:
+    """Whether a name is that of a row, or a grade that rows hold."""
+    return name in rows or bool(_rows_of_grade(name, rows))
+
+
 def name_of_row(
     name: str, rows: Mapping[str, MaterialRow] = MATERIALS, condition: str | None = None
 ) -> str:

@@ -11,7 +11,12 @@ from chatter.description.errors import InputError
 from chatter.description.file_name import FileName, in_case_folder
 from chatter.description.formatting import formatted
 from chatter.description.law_section import FORCE_LAWS, LawSection, law_section
-from chatter.description.material_table import name_of_row, read_material_table, row_named
+from chatter.description.material_table import (
+    is_in_table,
+    name_of_row,
+    read_material_table,
+    row_named,
+)
 from chatter.description.quantities import quantity
 from chatter.description.section import SectionError
 from cutting.force.law import ForceLaw
@@ -110,5 +115,6 @@ def _named(name: str, rows: Mapping[str, MaterialRow], condition: str | None) ->
     try:
         return row_named(name, rows, condition)
     except ValueError as error:
-        key = "name" if condition is None else "condition"
+        # a condition is at fault only where there are rows to choose among
+        key = "name" if condition is None or not is_in_table(name, rows) else "condition"
         raise SectionError([(key, str(error))]) from None

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from chatter.cutting_coefficients.identify import coefficients
+from chatter.description.errors import InputError
 from tests.chatter.cutting_coefficients import test_waveforms as waveforms
 
 #: chip and edge forces of both turns differ in sense only where the tool is in the work for 180 deg
@@ -42,6 +44,14 @@ def test_chip_and_edge_coefficients_have_their_senses(
             assert value == pytest.approx(waveforms.TRUE[name], rel=0.04), name
     if channels:
         assert list(found["signs"].values()) == list(senses)
+
+
+def test_a_direction_that_is_unknown_is_asked_for(tmp_path):
+    """A real slot so declared was "6 mean forces determine no force law"."""
+    channels = UNKNOWN.replace("direction = [1, 0, 0]", 'direction = "unknown"')
+    folder = waveforms.records(tmp_path, channels=channels, offsets=OFFSETS)
+    with pytest.raises(InputError, match=r"channels\.Fx\.direction: is unknown"):
+        coefficients(folder)
 
 
 @pytest.mark.parametrize(("kept", "sense"), [("c", -1.0), ("e", 1.0)])

@@ -203,6 +203,12 @@ def test_a_condition_that_does_not_choose_says_which_do(grade, condition, told):
     assert told in str(found.value)
 
 
+def test_a_name_of_no_row_is_at_fault_whatever_the_condition():
+    """The condition was blamed: "material.condition: unobtainium is not in the table"."""
+    with pytest.raises(InputError, match=r"material\.name: \"unobtainium\" is not in the table"):
+        loads('[material]\nname = "unobtainium"\ncondition = "annealed"')
+
+
 def test_a_condition_without_a_grade_is_refused():
     with pytest.raises(InputError, match="is given without name"):
         loads('[material]\ncondition = "annealed"\nKtc = "1 GPa"\nKrc = "1 GPa"')
@@ -219,7 +225,7 @@ def test_a_grade_of_digits_needs_no_quotes(given, name):
     assert loads(text).material.name == name
 
 
-def test_rows_of_one_condition_are_told_apart_by_their_coefficient():
+def test_rows_of_one_condition_show_their_coefficient():
     with pytest.raises(ValueError, match="the name of a row chooses") as told:
         name_of_row("Ti6Al4V")
     assert '(VDI 37)" (1050 MPa; Ktc 1245 MPa)' in str(told.value)
