@@ -135,7 +135,7 @@ def _of_machines() -> Iterator[Question]:
         yield Question("frequency response of a machine", lambda: frf(_quick(file), ["moving"]))
         yield Question("move of a machine", lambda: move(_quick(file), "speed"))
     if cut is not None:
-        short = {"structure.settling": "0.02 s", "simulation.duration": "0.05 s"}
+        short = {"structure.settling": "0.05 s", "simulation.duration": "0.05 s"}
         case = cut.folder / "case.toml"
         yield Question("cut on a machine", lambda: simulate(load(case).patch(short)))
 
@@ -145,8 +145,6 @@ def _quick(file: Path) -> MachineFile:
     return load_machine(file).patch(
         {
             "frf.moving.averages": 1,
-            "frf.moving.period": "0.5 s",
-            "frf.moving.lines": 20,
             "move.speed.travel": "5 mm",
         }
     )

@@ -60,3 +60,9 @@ def test_every_question_can_be_asked():
     assert len(cases) > 20
     for case in cases:
         assert set_up(case).step > 0.0
+
+
+def test_questions_of_machines_are_answered():
+    """The shipped machines are asked with short tests; one that is refused would end the command."""
+    for question in compiling._of_machines():
+        assert question.ask() is not None
