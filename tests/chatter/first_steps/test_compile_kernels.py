@@ -63,6 +63,6 @@ def test_every_question_can_be_asked():
 
 
 def test_questions_of_machines_are_answered():
-    """The shipped machines are asked with short tests; one that is refused would end the command."""
+    """A shipped machine that refuses its short test would end the command."""
     for question in compiling._of_machines():
         assert question.ask() is not None
