@@ -142,9 +142,4 @@ def _of_machines() -> Iterator[Question]:
 
 def _quick(file: Path) -> MachineFile:
     """The machine with short tests."""
-    return load_machine(file).patch(
-        {
-            "frf.moving.averages": 1,
-            "move.speed.travel": "5 mm",
-        }
-    )
+    return load_machine(file).patch({"frf.moving.averages": 1, "move.speed.travel": "5 mm"})
