@@ -85,19 +85,84 @@ class _Boundary(NamedTuple):
         return np.unique(self.column[wrong])
 
 
+class _Step:
+    """Limits of one call: those before corrected, and then checked."""
+
+    def __init__(self, cut: ElementCut, speeds: Array, depths: Array, before: _Boundary) -> None:
+        self._cut, self._speeds, self._depths = cut, speeds, depths
+        self._evaluated = collocation.evaluated_points(cut, speeds)
+        self._growth_rate = collocation.growth_rate_of(cut, speeds)
+        self._searched = np.empty(0, dtype=np.int64)
+        moved, depth = _moved(before, self._evaluated.growth_rate, self._growth_rate)
+        self._lost = moved.lost()
+        inside = moved.depth <= depths[-1]
+        self.boundary = _Boundary(*(part[inside] for part in moved))
+        self._followed, self._followed_depth = self.boundary, depth[inside]
+
+    def correct(self) -> bool:
+        """Search the speeds that were lost; False where they are too many."""
+        return self._search(self._lost)
+
+    def check(self, rotating: IntegerArray, turn: int) -> bool:
+        """Look for changes of stability that were not there before; False where many are found.
+
+        `rotating` are speeds at which the grid is looked at, `turn` says which of every two points
+        beside jumps of the limit.
+        """
+        depths, stride = self._depths, _STRIDE // 2
+        wanted = _grid(rotating, depths[stride - 1 :: stride])
+        while True:
+            doubtful = _doubtful_points(self.boundary, len(self._speeds), float(depths[-1]))
+            column, depth = (part[turn % 2 :: 2] for part in doubtful)
+            points = np.append(wanted[0], column), np.append(wanted[1], depth)
+            contradicted = _contradicted(self.boundary, *points, self._growth_rate)
+            found = np.setdiff1d(contradicted, self._searched)
+            if found.size == 0:
+                return True
+            if not self._search(found):
+                return False
+            wanted = column[:0], depth[:0]
+
+    def curve(self) -> LimitCurve:
+        """Limits as they are known by now."""
+        by_column = self.boundary.by_column(len(self._speeds))
+        resolution = collocation.points_of_periods(self._cut, self._speeds, self._depths)
+        return limits_at(self._at_limits, self._speeds, by_column, resolution)
+
+    def _search(self, columns: IntegerArray) -> bool:
+        self._searched = np.union1d(self._searched, columns)
+        if self._searched.size > _MANY * len(self._speeds):
+            return False
+        if columns.size:
+            found = _searched(columns, self._depths, self._growth_rate)
+            self.boundary = self.boundary.without(columns).joined(found)
+        return True
+
+    def _at_limits(self, column: IntegerArray, depth: Array) -> tuple[list[str], Array]:
+        """Next to a limit that was followed, at the depth that was evaluated."""
+        followed = self._followed.column
+        place = np.minimum(np.searchsorted(followed, column), max(len(followed) - 1, 0))
+        known = ~np.isin(column, self._searched)
+        near = self._followed_depth[place] if len(followed) else depth
+        return self._evaluated.at_limits(column, np.where(known, near, depth))
+
+
 class FollowedLimits:
     """Limits by collocation to 0.5 %, corrected from those of the call before.
 
-    Each limit is corrected by Newton's method from the last one. Where that does not lead to a
-    change of stability, and where points between the limits are not as stable as the limits say,
-    the speed is searched. Every call looks at some of the speeds, other ones each time, and at half
-    the points beside which limits jump or end: an island that is not there yet may appear some
-    calls late. The first call, and one with other speeds or depths, searches all.
+    Each limit is corrected by Newton's method from the last one; where that does not lead to a
+    change of stability, the speed is searched. The first call, and one with other speeds or depths,
+    searches all. `check`, once the limits are drawn, looks at points between them and searches the
+    speeds at which one is not as stable as the limits say: at some of the speeds, other ones each
+    time, and at half the points beside which limits jump or end. An island that is not there yet
+    may appear some calls late.
     """
 
     def __init__(self) -> None:
         self._speeds, self._depths = np.empty(0), np.empty(0)
+        self._cut: ElementCut | None = None
         self._boundary: _Boundary | None = None
+        self._step: _Step | None = None
         self._calls = 0
 
     def limits(
@@ -111,58 +176,43 @@ class FollowedLimits:
         """Limits at speeds (n,), rad/s, searched on depths (m,), m, as `StabilityMethod.limits`."""
         cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
         same = np.array_equal(speeds, self._speeds) and np.array_equal(depths, self._depths)
+        self._cut, self._speeds, self._depths, self._step = cut, speeds, depths, None
         with kept_threads():
-            curve = None
-            if same and self._boundary is not None and not varies(cut):
-                curve = self._corrected(cut, self._boundary, progress)
-            if curve is None:
-                curve = collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)
-                self._boundary = _unknown_slopes(np.arange(len(speeds)), curve.crossings)
-        self._speeds, self._depths = speeds, depths
+            if not same or self._boundary is None or varies(cut):
+                return self._all_searched(progress)
+            before, self._calls = self._boundary, self._calls + 1
+            # beside a corner of the boundary a slope may be that of the lobe before
+            before.slope[np.isin(before.column, self._rotating())] = np.nan
+            step = _Step(cut, speeds, depths, before)
+            progress(len(speeds) // 2, len(speeds))
+            if not step.correct():
+                return self._all_searched(progress)
+            self._step, self._boundary = step, step.boundary
+            progress(len(speeds), len(speeds))
+            return step.curve()
+
+    def check(self, progress: Progress) -> LimitCurve | None:
+        """Limits with what the correction did not see; None where that is nothing."""
+        step, self._step = self._step, None
+        if step is None:
+            return None
+        with kept_threads():
+            before = step.boundary
+            if not step.check(self._rotating(), self._calls):
+                return self._all_searched(progress)
+            self._boundary = step.boundary
+            return None if step.boundary is before else step.curve()
+
+    def _rotating(self) -> IntegerArray:
+        """Speeds that are looked at in this call."""
+        return np.arange(self._calls % _TURNS, len(self._speeds), _TURNS)
+
+    def _all_searched(self, progress: Progress) -> LimitCurve:
+        curve = collocation.limit_curve(
+            self._cut, self._speeds, self._depths, progress, _TOLERANCE, _STRIDE
+        )
+        self._boundary = _unknown_slopes(np.arange(len(self._speeds)), curve.crossings)
         return curve
-
-    def _corrected(
-        self, cut: ElementCut, before: _Boundary, progress: Progress
-    ) -> LimitCurve | None:
-        """Limits next to those before; None where too many are lost."""
-        speeds, depths, count = self._speeds, self._depths, len(self._speeds)
-        evaluated = collocation.evaluated_points(cut, speeds)
-        growth_rate = collocation.growth_rate_of(cut, speeds)
-        rotating = np.arange(self._calls % _TURNS, count, _TURNS)
-        # beside a corner of the boundary a slope may be that of the lobe before
-        before.slope[np.isin(before.column, rotating)] = np.nan
-        moved, evaluated_depth = _moved(before, evaluated.growth_rate, growth_rate)
-        progress(count // 2, count)
-        lost, searched = moved.lost(), np.empty(0, dtype=np.int64)
-        inside = moved.depth <= depths[-1]
-        moved = _Boundary(*(part[inside] for part in moved))
-        evaluated_depth = evaluated_depth[inside]
-        last = moved
-        wanted = _grid(rotating, depths[_STRIDE // 2 - 1 :: _STRIDE // 2])
-        while True:
-            doubtful = _doubtful_points(moved, count, float(depths[-1]))
-            column, depth = (part[self._calls % 2 :: 2] for part in doubtful)
-            points = np.append(wanted[0], column), np.append(wanted[1], depth)
-            lost = np.union1d(lost, _contradicted(moved, *points, growth_rate))
-            lost = np.setdiff1d(lost, searched)
-            if lost.size == 0:
-                break
-            searched, wanted = np.union1d(searched, lost), (column[:0], depth[:0])
-            if searched.size > _MANY * count:
-                return None
-            moved = moved.without(lost).joined(_searched(lost, depths, growth_rate))
-        progress(count, count)
-
-        def at_limits(column: IntegerArray, depth: Array) -> tuple[list[str], Array]:
-            """Next to a limit that was followed, at the depth that was evaluated."""
-            place = np.minimum(np.searchsorted(last.column, column), max(len(last.column) - 1, 0))
-            known = ~np.isin(column, searched)
-            near = evaluated_depth[place] if len(last.column) else depth
-            return evaluated.at_limits(column, np.where(known, near, depth))
-
-        self._boundary, self._calls = moved, self._calls + 1
-        resolution = collocation.points_of_periods(cut, speeds, depths)
-        return limits_at(at_limits, speeds, moved.by_column(count), resolution)
 
 
 def _unknown_slopes(columns: IntegerArray, crossings: tuple[Array, ...] | list[Array]) -> _Boundary:

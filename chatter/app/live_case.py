@@ -1,9 +1,8 @@
 """A case on the page: diagrams and simulated points for values of its sliders."""
 
 import math
-import time
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,12 +14,12 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
+from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.pockets import Pocket, find_pockets
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
-from dynamics.modal.modes import inside_band
 
 #: stage -> speeds, depths of the grid
 STAGES = {"coarse": (96, 24), "fine": (200, 50)}
@@ -49,6 +48,7 @@ class LiveCase:
         self.view = diagram_sliders((float(speeds[0]), float(speeds[-1])), max_depth)
         self.sliders = (*self.view, *case_sliders(case))
         self._followed = FollowedLimits()
+        self._followed_diagram: _Drawn | None = None
         self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
 
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
@@ -72,60 +72,67 @@ class LiveCase:
 
         The stage is a key of STAGES; progress may raise to give up.
         """
-        started = time.perf_counter()
         case, view = self.patched(given)
         speed_count, depth_count = STAGES[stage]
-        span = (from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"]))
+        ends = from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"])
         max_depth = view["lobes.depths.to"] * 1e-3
         model = milling_model(case)
-        steps = fixed_steps(case)
-        speeds = np.linspace(*span, speed_count)
+        speeds = np.linspace(*ends, speed_count)
         depths = np.linspace(0.0, max_depth, depth_count + 1)[1:]
         follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
         limits_of = self._followed.limits if follows else self._method.limits
-        curve = limits_of(model, speeds, depths, steps, progress)
-        cut = case.cut
-        inside = span[0] <= cut.spindle_speed <= span[1] and cut.axial_depth <= max_depth
-        if stage == "coarse" and inside:
-            operating, place = curve, int(np.argmin(np.abs(speeds - cut.spindle_speed)))
-        else:
-            deepest = beyond_the_cut(case, 1.02 * max_depth)
-            to_operating = np.linspace(0.0, deepest, depth_count + 1)[1:]
-            at = np.array([cut.spindle_speed])
-            operating, place = limits_of(model, at, to_operating, steps, progress), 0
-        below = int((operating.crossings[place] < cut.axial_depth).sum())
-        lowest = int(np.argmin(curve.critical_depth))
-        feed_per_turn = cut.feed_per_tooth * case.tool.teeth
-        removal_area = case.width_of_cut * feed_per_turn / (2.0 * math.pi)
+        curve = limits_of(model, speeds, depths, fixed_steps(case), progress)
+        drawn = _Drawn(case, model, stage, max_depth)
+        self._followed_diagram = drawn if follows else None
+        return self._described(drawn, curve, progress)
+
+    def checked_diagram(self, progress: Progress) -> dict[str, Any] | None:
+        """The last diagram with what following its limits did not see; None where that is nothing.
+
+        It takes as long again as a coarse diagram, which is drawn before.
+        """
+        drawn, self._followed_diagram = self._followed_diagram, None
+        curve = None if drawn is None else self._followed.check(progress)
+        if drawn is None or curve is None:
+            return None
+        return self._described(drawn, curve, progress)
+
+    def _described(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> dict[str, Any]:
+        """Diagram of limits, as the page takes it."""
+        case, cut, deepest = drawn.case, drawn.case.cut, drawn.max_depth
         pockets: Sequence[Pocket] = ()
-        if stage == "fine":
-            limits = curve.critical_depth
-            pockets = find_pockets(curve.spindle_speed, limits, max_depth, removal_area)
+        if drawn.stage == "fine":
+            area = case.width_of_cut * cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+            pockets = find_pockets(curve.spindle_speed, curve.critical_depth, deepest, area)
         return {
-            "stage": stage,
+            "stage": drawn.stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
             "crossings_mm": [_numbers(found * 1e3) for found in curve.crossings],
             "chatter_frequency_Hz": _numbers(curve.chatter_frequency),
             "bifurcation": list(curve.bifurcation),
-            "natural_frequencies_Hz": [
-                mode.frequency for mode in inside_band(model.structure.modes)
-            ],
-            "max_axial_depth_mm": max_depth * 1e3,
+            "max_axial_depth_mm": deepest * 1e3,
             "pockets": [_pocket(one) for one in pockets],
-            "lowest": {
-                "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
-                "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
-            },
             "operating": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
-                "critical_depth_mm": _number(float(operating.critical_depth[place]) * 1e3),
-                "stable": below % 2 == 0,
+                "stable": self._is_stable(drawn, curve, progress),
             },
-            "removal_rate_per_mm_rpm": case.width_of_cut * feed_per_turn * 1e3,  # cm^3/min
-            "notes": list(model.notes),
-            "seconds": time.perf_counter() - started,
+            "notes": list(drawn.model.notes),
         }
+
+    def _is_stable(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> bool:
+        """Whether the cut is; in a coarse diagram by the limits of the nearest speed."""
+        case, cut, speeds = drawn.case, drawn.case.cut, curve.spindle_speed
+        inside = speeds[0] <= cut.spindle_speed <= speeds[-1] and cut.axial_depth <= drawn.max_depth
+        if drawn.stage == "coarse" and inside:
+            crossings = curve.crossings[int(np.argmin(np.abs(speeds - cut.spindle_speed)))]
+        else:
+            deepest = beyond_the_cut(case, 1.02 * drawn.max_depth)
+            depths = np.linspace(0.0, deepest, STAGES[drawn.stage][1] + 1)[1:]
+            speed, steps = np.array([cut.spindle_speed]), fixed_steps(case)
+            found = self._method.limits(drawn.model, speed, depths, steps, progress)
+            crossings = found.crossings[0]
+        return int((crossings < cut.axial_depth).sum()) % 2 == 0
 
     def simulation(
         self, given: Any, speed_rpm: float, depth_mm: float, progress: Progress
@@ -135,7 +142,6 @@ class LiveCase:
         InputError is raised if the point is outside of the diagram or cannot be simulated, RunError
         if the tool moves so far that the model no longer holds.
         """
-        started = time.perf_counter()
         case, view = self.patched(given)
         _check_point(view, speed_rpm, depth_mm)
         wanted = {
@@ -166,8 +172,16 @@ class LiveCase:
                 "um": _numbers(result.displacement[whole, axis] * 1e6),
             },
             "notes": summary["notes"],
-            "seconds": time.perf_counter() - started,
         }
+
+
+class _Drawn(NamedTuple):
+    """What a diagram is of."""
+
+    case: Case
+    model: MillingModel
+    stage: str
+    max_depth: float  # m
 
 
 def _pocket(found: Pocket) -> dict[str, float | None]:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress
+from chatter.engine.parallel import kept_threads
 
 
 class SupersededError(Exception):
@@ -66,6 +67,11 @@ class Computations:
             return self._changed.wait_for(lambda: not (self._waiting or self._running), longest)
 
     def _work(self) -> None:
+        # starting threads for each diagram would cost it a millisecond or two
+        with kept_threads():
+            self._take_turns()
+
+    def _take_turns(self) -> None:
         while True:
             with self._changed:
                 self._changed.wait_for(lambda: bool(self._waiting) or self._ended)

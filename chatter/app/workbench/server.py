@@ -1,8 +1,9 @@
 """Panel's server on the loopback interface, behind a random token; nothing comes from elsewhere."""
 
 import secrets
-import socket
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import panel as pn
 
@@ -51,10 +52,7 @@ class WorkbenchServer:
             )
         except OSError as error:
             raise InputError(f"--port {port} cannot be used: {error.strerror}") from None
-        # a message of Bokeh is several small writes: without this each waits 40 ms for the page's
-        # acknowledgement of the one before; what is accepted inherits it
-        for listening in self._server._http._sockets.values():
-            listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._server._http.handle_stream = _undelayed(self._server._http.handle_stream)
         self.port: int = self._server.port
         self.url = f"http://localhost:{self.port}/{token}/"
 
@@ -66,3 +64,18 @@ class WorkbenchServer:
     def end(self) -> None:
         """End serving; may be called from another thread."""
         self._server.io_loop.add_callback(self._server.io_loop.stop)
+
+
+def _undelayed(handle_stream: Callable[[Any, Any], None]) -> Callable[[Any, Any], None]:
+    """Handler of new connections, all writes to which leave at once.
+
+    A message of Bokeh is several small writes: with Nagle's algorithm each waits up to 40 ms for
+    the page's acknowledgement of the one before. Tornado turns it on again after each answer.
+    """
+
+    def handle(stream: Any, address: Any) -> None:
+        stream.set_nodelay(True)
+        stream.set_nodelay = lambda _: None
+        handle_stream(stream, address)
+
+    return handle

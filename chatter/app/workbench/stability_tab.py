@@ -47,6 +47,7 @@ class StabilityTab:
         self.optimum = pn.widgets.Button(label="Optimum")
         self.uncertainty = pn.widgets.Button(label="Uncertainty band")
         self.upload = dropper(self.take_frfs, "FRF files in place of the modes")
+        self.frf_files = pn.Card(title="FRF files", collapsed=True, width=460)
         self.work = LongWork(session.root, show)
         self.message = self.work.message
         self._diagram, self._beside = pn.Column(), pn.Column()
@@ -54,6 +55,7 @@ class StabilityTab:
         self.optimum.on_click(lambda _: self.study("optimum"))
         self.uncertainty.on_click(lambda _: self.study("uncertainty"))
         self.other.param.watch(lambda _: self._compare(), "value")
+        self.frf_files.param.watch(lambda _: self._show_upload(), "collapsed")
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
@@ -61,7 +63,7 @@ class StabilityTab:
             pn.Row(self.keep, self.optimum, self.uncertainty, self.work.cancel_button, self.other),
             self.message,
             pn.Row(self._diagram, self._beside),
-            pn.Card(self.upload, title="FRF files", collapsed=True, width=460),
+            self.frf_files,
         )
 
     def refresh(self) -> None:
@@ -133,6 +135,10 @@ class StabilityTab:
         """Give up what is computed."""
         self.work.computations.end()
         self._end_diagrams()
+
+    def _show_upload(self) -> None:
+        """Put the dropper on the page only while it is open: it measures itself in every frame."""
+        self.frf_files.objects = [] if self.frf_files.collapsed else [self.upload]
 
     def _end_diagrams(self) -> None:
         for view in (self.diagram, self.beside):

@@ -24,6 +24,8 @@ _STEPS = 400
 _REST = 0.15
 #: pixels
 _WIDTH, _WIDTH_BESIDE = 820, 620
+#: the handle goes to where it is put without gliding there: each frame of that would be painted
+_AT_ONCE = ".noUi-state-tap .noUi-connect, .noUi-state-tap .noUi-origin {transition: none}"
 _HEADING = ("spindle_speed [rpm]", "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation")
 
 
@@ -145,7 +147,7 @@ class StabilityView:
         """Draw the diagram of the values, first a coarse one."""
         values = self.moved()
         self.computations.start(
-            Computation(lambda go_on: self._compute(values, "coarse", go_on), False),
+            Computation(lambda go_on: self._follow(values, go_on), False),
             Computation(lambda go_on: self._compute(values, "fine", go_on), True, _REST),
         )
 
@@ -156,6 +158,13 @@ class StabilityView:
         self.computations.start(
             Computation(lambda go_on: self._simulate(values, speed, depth, go_on), True)
         )
+
+    def _follow(self, values: dict[str, float], go_on: Progress) -> None:
+        """Draw a coarse diagram, and again where following its limits has missed something."""
+        self._compute(values, "coarse", go_on)
+        diagram = self._live.checked_diagram(go_on)
+        if diagram is not None:
+            self._show(lambda: self._draw(diagram))
 
     def _compute(self, values: dict[str, float], stage: str, go_on: Progress) -> None:
         try:
@@ -245,22 +254,22 @@ class StabilityView:
         drawn.xaxis.axis_label, drawn.yaxis.axis_label = "spindle speed [rpm]", "axial depth [mm]"
         drawn.varea(
             "speed", 0.0, "stable", source=self.limit, color="#9ccc9c", fill_alpha=0.45,
-            legend_label="stable",
+            level="overlay", legend_label="stable",
         )  # fmt: skip
         drawn.varea("speed", "low", "high", source=self.band, color="#E69F00", fill_alpha=0.35,
-                    legend_label="5 to 95 %")  # fmt: skip
+                    level="overlay", legend_label="5 to 95 %")  # fmt: skip
         line = drawn.line("speed", "depth", source=self.limit, line_width=2, color="#1f3b57",
-                          legend_label="critical axial depth")  # fmt: skip
+                          level="overlay", legend_label="critical axial depth")  # fmt: skip
         drawn.scatter(
             "speed", "depth", source=self.operating, size=11, color="colour",
-            legend_label="operating point",
+            level="overlay", legend_label="operating point",
         )  # fmt: skip
         pockets = drawn.scatter(
             "speed", "depth", source=self.pockets, size=10, marker="triangle", color="#0072B2",
-            legend_label="pockets",
+            level="overlay", legend_label="pockets",
         )  # fmt: skip
         drawn.scatter("speed", "depth", source=self.optimum, size=16, marker="star",
-                      color="#D55E00", legend_label="optimum")  # fmt: skip
+                      color="#D55E00", level="overlay", legend_label="optimum")  # fmt: skip
         told = [
             ("spindle speed", "@speed{0} rpm"),
             ("critical axial depth", "@depth{0.000} mm"),
@@ -305,7 +314,8 @@ def _text() -> pn.pane.Str:
 
 def _widget(one: Slider) -> pn.widgets.Widget:
     name = f"{one.label} [{one.unit}]" if one.unit else one.label
-    ends: dict[str, Any] = {"value": one.value, "start": one.low, "end": one.high}
+    ends: dict[str, Any] = {"value": one.value, "start": one.low, "end": one.high,
+                            "stylesheets": [_AT_ONCE]}  # fmt: skip
     if one.whole:
         return _PromptInteger(label=name, **ends)
     step = (one.high - one.low) / _STEPS

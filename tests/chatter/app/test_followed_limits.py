@@ -29,8 +29,15 @@ def harder(factor):
     )
 
 
-def limits(followed, case):
+def corrected(followed, case):
     return followed.limits(milling_model(case), SPEEDS, DEPTHS, None, no_progress)
+
+
+def limits(followed, case):
+    """Corrected and checked."""
+    curve = corrected(followed, case)
+    checked = followed.check(no_progress)
+    return curve if checked is None else checked
 
 
 def differing(curve, expected):
@@ -90,6 +97,21 @@ def test_a_mode_that_moves_brings_its_lobes_along():
     for _ in range(2 * followed_limits._TURNS):
         curve = limits(followed, moved)
     assert differing(curve, wanted) == 0.0
+
+
+def test_what_a_correction_does_not_see_is_found_by_the_checks():
+    followed, moved = FollowedLimits(), CASE.patch({"structure.mode[1].frequency": "960 Hz"})
+    limits(followed, CASE)
+    wanted = limits(FollowedLimits(), moved).critical_depth
+    for _ in range(2 * followed_limits._TURNS):
+        unchecked = corrected(followed, moved)
+    assert differing(unchecked, wanted) > 0.0
+    for _ in range(2 * followed_limits._TURNS):
+        checked = limits(followed, moved)
+    assert differing(checked, wanted) == 0.0
+    corrected(followed, moved)
+    # nothing is left to find, which is not drawn again
+    assert followed.check(no_progress) is None
 
 
 def test_other_depths_are_searched_anew():

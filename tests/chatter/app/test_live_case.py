@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.app import followed_limits
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import case_sliders
 from chatter.description.errors import InputError
@@ -48,7 +49,33 @@ def test_limit_is_inverse_to_the_coefficients(live):
     before = live.diagram({}, "coarse", no_progress)
     values = {"material.Ktc": 1200.0, "material.Krc": 400.0, "lobes.depths.to": 5.0}
     after = live.diagram(values, "coarse", no_progress)
-    assert after["lowest"]["depth_mm"] == pytest.approx(0.5 * before["lowest"]["depth_mm"])
+    lowest = [min(d[0] for d in one["crossings_mm"] if d) for one in (before, after)]
+    assert lowest[1] == pytest.approx(0.5 * lowest[0])
+
+
+def test_a_cut_off_the_diagram_does_not_make_each_move_a_search(monkeypatch):
+    live, searched = LiveCase(chatter.load(CASE), "collocation"), []
+    values = {"lobes.depths.to": 0.9 * live.by_path["cut.axial_depth"].value}
+    live.diagram(values, "coarse", no_progress)
+    search = followed_limits.collocation.limit_curve
+    monkeypatch.setattr(followed_limits.collocation, "limit_curve",
+                        lambda *given: searched.append(given) or search(*given))  # fmt: skip
+    live.diagram({**values, "material.Ktc": 603.0}, "coarse", no_progress)
+    assert not searched
+
+
+def test_only_a_coarse_diagram_that_followed_is_checked():
+    live = LiveCase(chatter.load(CASE), "collocation")
+    live.diagram({}, "coarse", no_progress)
+    # all was searched: nothing is left to look for
+    assert live.checked_diagram(no_progress) is None
+    for frequency in np.linspace(930.0, 1000.0, 8):
+        moved = {"structure.mode[1].frequency": frequency}
+        live.diagram(moved, "coarse", no_progress)
+    found = live.checked_diagram(no_progress)
+    assert found is not None
+    assert found["stage"] == "coarse"
+    assert live.checked_diagram(no_progress) is None
 
 
 @pytest.mark.parametrize(

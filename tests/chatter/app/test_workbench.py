@@ -212,9 +212,31 @@ def test_the_page_refers_to_nothing_elsewhere(server):
 
 def test_small_messages_leave_at_once(server):
     """Bokeh's three writes a message would each wait 40 ms for an acknowledgement."""
-    listening = server._server._http._sockets.values()
-    assert listening
-    assert all(one.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) for one in listening)
+    accepted: list = []
+
+    async def converse():
+        page = answer(server, prefix(server) + "/")[1].decode()
+        socket_of_page = await opened_socket(server, page)
+        assert "ACK" in await socket_of_page.read_message()
+        pages = [one._socket.ws_connection.stream for one in server._server._tornado._clients]
+        accepted.extend(
+            one.socket.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY) for one in pages
+        )
+        socket_of_page.close()
+        while await socket_of_page.read_message() is not None:
+            pass
+
+    asyncio.run(asyncio.wait_for(converse(), 30.0))
+    assert accepted
+    assert all(accepted)
+
+
+async def opened_socket(server, page):
+    """Open the websocket of a page."""
+    token = re.search(r'"token":"([^"]+)"', page).group(1)
+    url = f"ws://127.0.0.1:{server.port}{prefix(server)}/ws"
+    request = HTTPRequest(url, headers={"Origin": server.url.rsplit("/", 2)[0]})
+    return await websocket_connect(request, subprotocols=["bokeh", token])
 
 
 @pytest.mark.parametrize("path", ["/", "/guess/", "/static/js/bokeh.min.js"])
@@ -254,12 +276,9 @@ def test_a_foreign_origin_opens_no_socket(server):
 
 def test_a_malformed_message_leaves_the_page_alive(server):
     page = answer(server, prefix(server) + "/")[1].decode()
-    token = re.search(r'"token":"([^"]+)"', page).group(1)
 
     async def send():
-        url = f"ws://127.0.0.1:{server.port}{prefix(server)}/ws"
-        request = HTTPRequest(url, headers={"Origin": server.url.rsplit("/", 2)[0]})
-        socket = await websocket_connect(request, subprotocols=["bokeh", token])
+        socket = await opened_socket(server, page)
         assert "ACK" in await socket.read_message()
         for _ in range(3):  # header, metadata, content
             await socket.write_message("{")
