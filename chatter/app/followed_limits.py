@@ -103,17 +103,17 @@ class _Step:
         """Search the speeds that were lost; False where they are too many."""
         return self._search(self._lost)
 
-    def check(self, rotating: IntegerArray, turn: int) -> bool:
+    def check(self, rotating: IntegerArray, call: int) -> bool:
         """Look for changes of stability that were not there before; False where many are found.
 
-        `rotating` are speeds at which the grid is looked at, `turn` says which of every two points
+        `rotating` are speeds at which the grid is looked at, the number of the call says which of every two points
         beside jumps of the limit.
         """
         depths, stride = self._depths, _STRIDE // 2
         wanted = _grid(rotating, depths[stride - 1 :: stride])
         while True:
             doubtful = _doubtful_points(self.boundary, len(self._speeds), float(depths[-1]))
-            column, depth = (part[turn % 2 :: 2] for part in doubtful)
+            column, depth = (part[call % 2 :: 2] for part in doubtful)
             points = np.append(wanted[0], column), np.append(wanted[1], depth)
             contradicted = _contradicted(self.boundary, *points, self._growth_rate)
             found = np.setdiff1d(contradicted, self._searched)

@@ -14,7 +14,12 @@ import time
 import urllib.request
 from pathlib import Path
 
+import numpy as np
+from PIL import Image
+
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+#: of the mouse's modifiers
+SHIFT = 8
 #: s; a loaded machine starts a browser slowly
 PATIENCE = 90.0
 #: finds elements behind shadow roots too
@@ -27,6 +32,9 @@ window.deepAll = (selector, root = document) => {
 };
 window.labelled = (text, selector = 'button') =>
   deepAll(selector).find(one => one.textContent.trim() === text && one.getClientRects().length);
+window.boxLabelled = text => deepAll('input[type=checkbox]').find(one =>
+  one.getClientRects().length && one.nextElementSibling
+  && one.nextElementSibling.textContent.trim() === text);
 window.pageText = () => {
   const texts = [];
   const walk = root => { for (const one of root.childNodes) {
@@ -116,9 +124,9 @@ class Tab:
             time.sleep(0.05)
         raise AssertionError(f"never true: {expression}; page: {self.value('pageText()')[:3000]}")
 
-    def mouse(self, kind: str, x: float, y: float) -> None:
+    def mouse(self, kind: str, x: float, y: float, keys: int = 0) -> None:
         button = {"button": "left", "clickCount": 1} if kind != "mouseMoved" else {}
-        self.command("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
+        self.command("Input.dispatchMouseEvent", type=kind, x=x, y=y, modifiers=keys, **button)
 
     def screenshot(self, path: Path) -> None:
         """Write a picture of the page."""
@@ -163,11 +171,16 @@ class Tab:
             time.sleep(0.2)
         self.click(*place)
 
-    def click(self, x: float, y: float) -> None:
-        """Click a place of the window."""
-        self.mouse("mouseMoved", x, y)
-        self.mouse("mousePressed", x, y)
-        self.mouse("mouseReleased", x, y)
+    def click(self, x: float, y: float, keys: int = 0) -> None:
+        """Click a place of the window; `keys` are those held, as SHIFT."""
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            self.mouse(kind, x, y, keys)
+
+    def tick(self, label: str) -> None:
+        """Click the visible box of a label."""
+        box = f"boxLabelled({json.dumps(label)})"
+        self.wait(f"!!{box}")
+        self.value(f"{box}.click()")
 
     def _field(self, label: str, selector: str) -> str:
         """Expression of the visible field of a label, once it is there."""
@@ -197,6 +210,15 @@ class Tab:
         self.value(
             f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"
             "one.value = [...one.options].find(o => o.textContent.trim() === wanted).value;"
+            "one.dispatchEvent(new Event('change', {bubbles: true})); })()"
+        )
+
+    def choose_also(self, label: str, option: str) -> None:
+        """Choose one more option of the visible list of several of a label."""
+        field = self._field(label, "select")
+        self.value(
+            f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"
+            "[...one.options].find(o => o.textContent.trim() === wanted).selected = true;"
             "one.dispatchEvent(new Event('change', {bubbles: true})); })()"
         )
 
@@ -261,3 +283,12 @@ def tab_of(port: int) -> Tab:
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/json/list", timeout=PATIENCE) as told:
             pages = [one for one in json.load(told) if one["type"] == "page"]
     return Tab(pages[0]["webSocketDebuggerUrl"])
+
+
+def shot(tab, folder, name):
+    """Look at the page: a picture that is not one colour, and no error on it."""
+    path = folder / f"{name}.png"
+    tab.settled_screenshot(path)
+    colours = np.asarray(Image.open(path).convert("L"))
+    assert len(np.unique(colours)) > 20
+    assert "Traceback" not in tab.value("pageText()")

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
-import gc
 import shutil
-import threading
 import time
 
-import numpy as np
 import pytest
 
 import chatter
 from benchmarks.workbench_in_browser import TIME
-from chatter.app.workbench.server import WorkbenchServer
-from tests.chatter.app.browser_tab import browser, tab_of
+from tests.chatter.app.browser_tab import shot
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
 from tests.chatter.studies.test_modal_test import write_set
 from tests.places import EXAMPLES
@@ -35,50 +30,6 @@ ANSWERS = {
     "Cut: spindle speed, feed per tooth, axial depth": "8000 rpm, 0.05 mm, 1 mm",
     'Engagement: "slot", or "up" or "down" and the radial depth': "down, 6 mm",
 }
-
-
-@pytest.fixture
-def served(tmp_path):
-    folder = tmp_path / "work"
-    folder.mkdir()
-    serving: list[WorkbenchServer] = []
-    ready = threading.Event()
-
-    def serve():
-        asyncio.set_event_loop(asyncio.new_event_loop())
-        serving.append(WorkbenchServer(folder))
-        ready.set()
-        serving[0].serve()
-
-    thread = threading.Thread(target=serve, daemon=True)
-    thread.start()
-    assert ready.wait(60.0)
-    yield folder, serving[0]
-    serving[0].end()
-    thread.join(60.0)
-    gc.collect()  # what was not sent is left here, and not after the last test
-
-
-@pytest.fixture
-def tab(tmp_path, served):
-    profile = tmp_path / "profile"
-    profile.mkdir()
-    with browser(profile) as port:
-        found = tab_of(port)
-        found.open(served[1].url)
-        yield found
-        found.close()
-
-
-def shot(tab, folder, name):
-    """Look at the page: a picture that is not one colour, and no error on it."""
-    from PIL import Image
-
-    path = folder / f"{name}.png"
-    tab.settled_screenshot(path)
-    colours = np.asarray(Image.open(path).convert("L"))
-    assert len(np.unique(colours)) > 20
-    assert "Traceback" not in tab.value("pageText()")
 
 
 def test_hammer_files_to_the_sheet_within_five_minutes(tab, served, tmp_path):
