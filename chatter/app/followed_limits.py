@@ -106,8 +106,8 @@ class _Step:
     def check(self, rotating: IntegerArray, call: int) -> bool:
         """Look for changes of stability that were not there before; False where many are found.
 
-        `rotating` are speeds at which the grid is looked at, the number of the call says which of every two points
-        beside jumps of the limit.
+        `rotating` are speeds at which the grid is looked at; the number of the call says which of
+        every two points beside jumps of the limit.
         """
         depths, stride = self._depths, _STRIDE // 2
         wanted = _grid(rotating, depths[stride - 1 :: stride])

@@ -1,0 +1,45 @@
+"""A served folder, and a tab of a browser that is open at it."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import threading
+
+import pytest
+
+from chatter.app.workbench.server import WorkbenchServer
+from tests.chatter.app.browser_tab import browser, tab_of
+
+
+@pytest.fixture
+def served(tmp_path):
+    folder = tmp_path / "work"
+    folder.mkdir()
+    serving: list[WorkbenchServer] = []
+    ready = threading.Event()
+
+    def serve():
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        serving.append(WorkbenchServer(folder))
+        ready.set()
+        serving[0].serve()
+
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    assert ready.wait(60.0)
+    yield folder, serving[0]
+    serving[0].end()
+    thread.join(60.0)
+    gc.collect()  # what was not sent is left here, and not after the last test
+
+
+@pytest.fixture
+def tab(tmp_path, served):
+    profile = tmp_path / "profile"
+    profile.mkdir()
+    with browser(profile) as port:
+        found = tab_of(port)
+        found.open(served[1].url)
+        yield found
+        found.close()
