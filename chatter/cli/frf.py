@@ -23,6 +23,7 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import NUMBER
 from chatter.report.console import print_line, print_table
+from chatter.studies.frf_units import frf_unit
 
 if TYPE_CHECKING:
     from chatter.simulation.virtual_tests.frf import FrfResult
@@ -121,7 +122,7 @@ def _ends(band: str) -> list[str]:
 
 def _print_peaks(result: FrfResult) -> None:
     for curve in result.summary()["curves"]:
-        rows = []
+        rows, (unit, factor) = [], frf_unit(curve["unit"])
         for how, key in (("linearised", "peaks"), ("test", "tested_peaks")):
             for peak in curve[key] or []:
                 damping = peak["damping"]
@@ -129,14 +130,14 @@ def _print_peaks(result: FrfResult) -> None:
                     [
                         how,
                         f"{peak['frequency_Hz']:.2f}",
-                        f"{peak['magnitude']:.4g}",
+                        f"{factor * peak['magnitude']:.4g}",
                         "" if damping is None else f"{100.0 * damping:.2f}",
                     ]
                 )
         state = f" ({curve['state']})" if curve["state"] else ""
         of_what = f"{curve['name']}{state}: peaks of the {curve['quantity']}"
         if rows:
-            headers = ["", "frequency [Hz]", f"magnitude [{curve['unit']}]", "damping [%]"]
+            headers = ["", "frequency [Hz]", f"magnitude [{unit}]", "damping [%]"]
             print_table(of_what, headers, rows)
         else:
             print_line(_without_peaks(of_what, curve))
@@ -144,8 +145,8 @@ def _print_peaks(result: FrfResult) -> None:
 
 def _without_peaks(of_what: str, curve: dict) -> str:
     lowest, highest = curve["band_Hz"]
-    largest = curve["largest"]
+    largest, (unit, factor) = curve["largest"], frf_unit(curve["unit"])
     return (
         f"{of_what}: none from {lowest:g} to {highest:g} Hz; the largest value is "
-        f"{largest['magnitude']:.4g} {curve['unit']} at {largest['frequency_Hz']:.4g} Hz"
+        f"{factor * largest['magnitude']:.4g} {unit} at {largest['frequency_Hz']:.4g} Hz"
     )

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.plots import style
+from chatter.studies.frf_units import frf_unit
 from dynamics.frf.container import Frf
 
 if TYPE_CHECKING:
@@ -38,15 +39,16 @@ def plot_frf(result: FrfResult) -> Figure:
         rows, 1, sharex=True, gridspec_kw={"height_ratios": [2.2, 1.0, 0.8][:rows]}
     )
     figure.suptitle(result.machine, fontsize=11.0, x=0.01, ha="left")
-    units = {curve.unit for curve in result.curves}
+    units = {frf_unit(curve.unit)[0] for curve in result.curves}
     for index, curve in enumerate(result.curves):
         colour = _COLOURS[index % len(_COLOURS)]
         label = curve.name if not curve.state else f"{curve.name}: {curve.state}"
+        unit, factor = frf_unit(curve.unit)
         if len(units) > 1:
-            label += f" [{curve.unit}]"
-        _draw(axes[:2], curve.harmonic, label, colour=colour, linestyle="-", linewidth=1.4)
+            label += f" [{unit}]"
+        _draw(axes[:2], curve.harmonic, factor, label, colour, linestyle="-", linewidth=1.4)
         if curve.tested is not None:
-            _draw(axes[:2], curve.tested, "", colour=colour, linestyle=":", linewidth=1.8)
+            _draw(axes[:2], curve.tested, factor, "", colour, linestyle=":", linewidth=1.8)
             if incoherent and curve.tested.coherence is not None:
                 axes[2].plot(curve.tested.frequency, curve.tested.coherence, color=colour, lw=1.0)
     if shown:
@@ -69,8 +71,11 @@ def plot_frf(result: FrfResult) -> Figure:
     return figure
 
 
-def _draw(pair: tuple[Axes, Axes], frf: Frf, label: str, colour: str, **line: object) -> None:
-    pair[0].plot(frf.frequency, np.abs(frf.values), color=colour, label=label or None, **line)
+def _draw(
+    pair: tuple[Axes, Axes], frf: Frf, factor: float, label: str, colour: str, **line: object
+) -> None:
+    size = factor * np.abs(frf.values)
+    pair[0].plot(frf.frequency, size, color=colour, label=label or None, **line)
     phase = np.degrees(np.angle(frf.values))
     # a jump from -180 to 180 is no line
     broken = np.where(np.abs(np.diff(phase, prepend=phase[0])) > 180.0, np.nan, phase)

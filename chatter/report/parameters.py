@@ -15,6 +15,9 @@ _READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
     # edges have some N/mm, joints and bristles some N/um
     "N/m": ((0.0, "N/mm", 1e-3), (1e6, "N/um", 1e-6)),
     "m/s": ((0.0, "mm/s", 1e3),),
+    "N*m/rad": ((1e3, "kN*m/rad", 1e-3), (1e6, "MN*m/rad", 1e-6)),
+    "N*s/m": ((1e3, "kN*s/m", 1e-3),),
+    "rad/s": ((0.0, "rpm", 30.0 / math.pi),),
     "N/m/s": ((0.0, "N/mm/min", 60e-3),),
     "1": ((0.0, "%", 100.0),),
     "1/s": ((0.0, "1/min", 60.0),),

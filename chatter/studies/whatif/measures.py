@@ -14,6 +14,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.io.result_files import finite_or_none
+from chatter.studies.frf_units import frf_unit
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
@@ -206,8 +207,9 @@ def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
     numbers: dict[str, float | None] = {}
     curves = []
     highest = (-1.0, "", 0.0, "")
-    for name, quantity, unit, frequency, values in frfs:
-        size = np.abs(values)
+    for name, quantity, given, frequency, values in frfs:
+        unit, factor = frf_unit(given)
+        size = factor * np.abs(values)
         peak = int(np.argmax(size))
         if size[peak] > highest[0]:
             highest = (float(size[peak]), name, float(frequency[peak]), unit)

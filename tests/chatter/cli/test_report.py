@@ -94,6 +94,18 @@ def test_the_case_is_there_with_units_and_its_file_with_its_hash(folder):
     assert "chatter check case.toml --set 'cut.axial_depth=0.31 mm' --report p.html" in text
 
 
+def test_bare_numbers_of_a_file_have_their_units(folder):
+    text = CASE.replace('"600 MPa"', "600e6").replace('"0.03993 kg"', "0.03993")
+    assert text.count("600e6") == 1
+    (folder / "bare.toml").write_text(text, encoding="utf-8")
+    chatter_command("check", "bare.toml", "--report", "p.html")
+    page = (folder / "p.html").read_text(encoding="utf-8")
+    assert "<td>material.Ktc</td><td>600 MPa</td>" in page
+    assert "<td>structure.mode[0].mass</td><td>0.03993 kg</td>" in page
+    # pure numbers stay as they are
+    assert "<td>structure.mode[0].damping</td><td>0.011</td>" in page
+
+
 def test_the_verdict_is_the_answer_with_json_too(folder):
     spoken = chatter_command("check", "case.toml", "--report", "words.html")
     silent = chatter_command("check", "case.toml", "--json", "--report", "json.html")
