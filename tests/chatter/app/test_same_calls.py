@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import csv
+import json
+import math
 import shlex
 import shutil
+from itertools import pairwise
 
 import openpyxl
 import panel as pn
@@ -14,8 +17,10 @@ import chatter
 from chatter.app.workbench.page import Workbench
 from chatter.cli import COMMANDS
 from tests.chatter.app.test_views import PATIENCE
+from tests.chatter.simulation.virtual_tests.conftest import FILE as SMALL_MACHINE
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
 from tests.chatter.studies.test_modal_test import write_set
+from tests.command_line import chatter_command
 from tests.places import EXAMPLES
 
 
@@ -54,6 +59,58 @@ def test_every_view_says_what_gives_the_same(workbench):
         functions = [line.split(".")[1].split("(")[0] for line in calls if line[7:8] == "."]
         assert functions, name
         assert all(callable(getattr(chatter, one)) for one in functions), name
+
+
+def shown_pairs(workbench):
+    """Command and call of every button that is quick, as the views show them."""
+    told = ""
+    for number, name in enumerate(workbench.views):
+        workbench.tabs.active = number
+        told += texts(workbench.views[name]) + "\n"
+    workbench.studies.choice.value = "whatif"
+    told += texts(workbench.studies)
+    lines = [line for line in told.splitlines() if line.startswith("chatter")]
+    pairs = {shlex.split(one)[1]: (one, other) for one, other in pairwise(lines)
+             if one.startswith("chatter ") and other.startswith("chatter.")}  # fmt: skip
+    return {name: pairs[name] for name in ("modes", "lobes", "simulate", "whatif", "move")}
+
+
+def numbers_of(told):
+    """Every number of a summary, by its path, but times of computation."""
+    if isinstance(told, dict):
+        return {
+            f"{key}.{path}": one
+            for key, value in told.items()
+            if "second" not in key
+            for path, one in numbers_of(value).items()
+        }
+    if isinstance(told, list):
+        return {
+            f"{index}.{path}": one
+            for index, value in enumerate(told)
+            for path, one in numbers_of(value).items()
+        }
+    return {"": told} if isinstance(told, float) and math.isfinite(told) else {}
+
+
+def test_command_and_call_of_a_view_give_the_same_numbers(workbench, tmp_path, monkeypatch):
+    text = (tmp_path / "case.toml").read_text().replace(":400", ":20")
+    (tmp_path / "case.toml").write_text(text)
+    (tmp_path / "machine.toml").write_text(SMALL_MACHINE)
+    workbench.machine.refresh()
+    workbench.machine._opened()
+    pairs = shown_pairs(workbench)
+    monkeypatch.chdir(tmp_path)
+    for name, (command, call) in pairs.items():
+        spoken = chatter_command(*shlex.split(command)[1:], "--json")
+        assert spoken.exit_code == 0, spoken.stderr
+        of_command = numbers_of(json.loads(spoken.stdout))
+        of_call = numbers_of(eval(call, {"chatter": chatter}).summary())
+        assert len(of_call) > 2, name
+        # `simulate` says besides what the linear analysis says, `move` answers by name
+        of_one = {key.removeprefix("fast."): one for key, one in of_command.items()}
+        same = {key: one for key, one in of_one.items() if key in of_call}
+        assert same == pytest.approx(of_call), name
 
 
 def test_the_calls_follow_what_is_chosen(workbench):
