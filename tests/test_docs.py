@@ -75,3 +75,20 @@ def test_tables_of_packages_name_what_is_in_them(path):
         for name in re.findall(r"[\w.]+", line[:width]):
             entry = path.parent / name
             assert entry.exists() or entry.with_suffix(".py").exists(), name
+
+
+THEORY = [one for one in sorted((DOCS / "theory").glob("*.md"))
+          if one.stem not in ("index", "bibliography")]  # fmt: skip
+
+
+@pytest.mark.parametrize("path", THEORY, ids=lambda path: path.stem)
+def test_a_method_has_equations_a_figure_and_a_source(path):
+    page = path.read_text(encoding="utf-8")
+    assert page.count("$$") >= 2
+    pictures = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", page)
+    assert pictures
+    assert all((path.parent / one).is_file() for one in pictures)
+    cited = {key for keys in re.findall(r"\{cite\}`([^`]+)`", page) for key in keys.split(",")}
+    known = set(re.findall(r"^@\w+\{(\w+),", (DOCS / "references.bib").read_text(), re.M))
+    assert cited
+    assert cited <= known
