@@ -124,7 +124,7 @@ def _follow(options_: DetectOptions, case: Case | None) -> None:
         raise InputError("--columns is of a finished file; with --follow its heading names them")
     from chatter.monitoring.follow import follow
 
-    verdict, told = "", False
+    verdict, told, corrected = "", False, False
     try:
         for one in follow(
             options_.recording,
@@ -138,6 +138,12 @@ def _follow(options_: DetectOptions, case: Case | None) -> None:
                 verdict = one.verdict
                 line = f", {one.chatter_frequency:.1f} Hz" if verdict == "chatter" else ""
                 print_message(f"{one.time:.2f} s: {verdict}{line}")
+            if one.speed_is_corrected and not corrected:
+                corrected = True
+                print_message(
+                    f"{one.time:.2f} s: the spindle runs at {60.0 * one.spindle_frequency:.0f} rpm "
+                    "by the spacing of its lines, and is taken to do so from here on"
+                )
             if one.speed_is_refuted and not told:
                 told = True
                 print_message(

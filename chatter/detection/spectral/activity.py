@@ -1,12 +1,15 @@
-"""Frames in which nothing is cut: the floor between the lines tells them from the others."""
+"""Frames in which nothing is cut: their level tells them, and that no teeth are heard in them."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.detection.spectral.chatter_lines import Comb, share_of_harmonics
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.spectra import Frames
+from chatter.detection.spectral.spectra import Frames, above_floor
 
 Array = NDArray[np.float64]
 
@@ -20,6 +23,11 @@ _QUIET = 0.1
 _APART_DB, _APART = 3.0, 3.0
 #: fewest frames that can be told apart
 _FEWEST = 6
+#: low harmonics of the teeth, their share from which quiet frames cut as well, and how many frames
+#: it takes, as those at the border of a cut hold a part of it
+_LOW, _TEETH, _FEWEST_CUTTING = 12, 0.6, 4
+#: harmonics of the teeth whose level tells a cut from a machine that hums louder
+_HARMONICS = 30
 #: s without any change of the signal that is no record: muted, or before the first sample
 _UNCHANGED = 0.05
 
@@ -62,6 +70,54 @@ def activity_levels(frames: Frames, silent: NDArray[np.bool_]) -> Array:
     levels = np.full(frames.time.size, -np.inf)
     levels[~silent] = 0.5 * (by_band + whole - np.quantile(whole, _QUIET))
     return levels
+
+
+def harmonic_levels(frames: Frames, combs: Sequence[Comb], silent: NDArray[np.bool_]) -> Array:
+    """Mean level of the harmonics of the teeth above that of quiet frames, dB, (m,).
+
+    It is -inf of silent ones. A line of the machine that is louder than the cut does not hide them.
+    """
+    levels = np.full(frames.time.size, -np.inf)
+    for row in np.flatnonzero(~silent):
+        at = combs[row].tooth * np.arange(1, _HARMONICS + 1)
+        index = np.round(at[at < frames.frequency[-1]] / frames.step).astype(np.intp)
+        levels[row] = np.mean(np.log10(frames.power[row, index] + 1e-300)) if index.size else 0.0
+    return 10.0 * (levels - np.quantile(levels[~silent], _QUIET))
+
+
+def frames_at_rest(
+    levels: Array, frames: Frames, combs: Sequence[Comb]
+) -> NDArray[np.bool_] | None:
+    """Frames of so low a level that nothing is cut; None where no frame is such.
+
+    Quiet frames in which the teeth are heard are a cut that is stable, or shallow, beside one that
+    chatters, or is deep: what is quieter still is looked for among them.
+    """
+    idle = idle_frames(levels)
+    while idle is not None:
+        rows = np.flatnonzero(idle)
+        inside = idle_frames(levels[rows])
+        louder = None if inside is None else rows[~inside]
+        if louder is not None and are_cutting(frames, combs, louder):
+            idle = np.zeros_like(idle)
+            idle[rows[inside]] = True
+        elif are_cutting(frames, combs, rows[np.isfinite(levels[rows])]):
+            return None
+        else:
+            return idle
+    return None
+
+
+def are_cutting(frames: Frames, combs: Sequence[Comb], rows: NDArray[np.intp]) -> bool:
+    """Whether most of the low harmonics of the teeth stand out in some frames.
+
+    A spindle that turns in the air has some too, of its balance, its bearings and its drive.
+    """
+    if rows.size < _FEWEST_CUTTING:
+        return False
+    middle = combs[rows[rows.size // 2]]
+    above = above_floor(np.median(frames.power[rows], axis=0), frames.frequency, frames.length)
+    return share_of_harmonics(above, frames.frequency, middle, _LOW) > _TEETH
 
 
 def idle_frames(levels: Array) -> NDArray[np.bool_] | None:

@@ -123,13 +123,18 @@ def _significance(above: Array, frequency: Array, at: Array, offsets: Array, com
     """
     if at.size < _FEWEST_POSITIONS or offsets.size < _FEWEST_OFFSETS:
         return 0.0
+    standing = _standing(above, frequency, at, offsets, comb)
+    expected = _CHANCE * at.size
+    return float((standing - expected) / np.sqrt(expected * (1.0 - _CHANCE)))
+
+
+def _standing(above: Array, frequency: Array, at: Array, offsets: Array, comb: Comb) -> int:
+    """Number of positions that exceed 95 % of the same position shifted by each offset."""
     step = float(frequency[1] - frequency[0])
     reach = max(round(0.5 * comb.half_width / step), 1)
     own = _strengths(above, at, step, reach)
     others = np.array([_strengths(above, at + offset, step, reach) for offset in offsets])
-    standing = int(np.sum(own > np.quantile(others, 1.0 - _CHANCE, axis=0)))
-    expected = _CHANCE * at.size
-    return float((standing - expected) / np.sqrt(expected * (1.0 - _CHANCE)))
+    return int(np.sum(own > np.quantile(others, 1.0 - _CHANCE, axis=0)))
 
 
 def _strengths(above: Array, at: Array, step: float, reach: int) -> Array:
@@ -152,10 +157,25 @@ def harmonics_significance(
     orders = np.arange(1, _HARMONICS + 1)
     if without_multiples_of > 0:
         orders = orders[orders % without_multiples_of > 0]
+    at, offsets = _harmonics(frequency, comb, orders)
+    return _significance(above, frequency, at, offsets, comb)
+
+
+def share_of_harmonics(
+    above: Array, frequency: Array, comb: Comb, count: int = _HARMONICS
+) -> float:
+    """Share of the first harmonics of the teeth that stand above what is beside them."""
+    at, offsets = _harmonics(frequency, comb, np.arange(1, count + 1))
+    if at.size < _FEWEST_POSITIONS or offsets.size < _FEWEST_OFFSETS:
+        return 0.0
+    return _standing(above, frequency, at, offsets, comb) / at.size
+
+
+def _harmonics(frequency: Array, comb: Comb, orders: Array) -> tuple[Array, Array]:
+    """Harmonics of the teeth, and offsets from them at which lines are there by chance, Hz."""
     at = comb.tooth * orders
-    at = at[at < frequency[-1] - comb.revolution]
     offsets = comb.revolution * (np.arange(_OFFSETS) + 0.5) / _OFFSETS
-    return _significance(above, frequency, at, offsets[_between(offsets, comb)], comb)
+    return at[at < frequency[-1] - comb.revolution], offsets[_between(offsets, comb)]
 
 
 def tooth_powers(power: Array, frequency: Array, comb: Comb) -> tuple[float, float, float]:

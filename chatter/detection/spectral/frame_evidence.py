@@ -3,22 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.spectral.activity import activity_levels, idle_frames, silent_frames
-from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
+from chatter.detection.spectral.activity import (
+    activity_levels,
+    frames_at_rest,
+    harmonic_levels,
+    idle_frames,
+    silent_frames,
+)
+from chatter.detection.spectral.chatter_lines import (
+    LOWEST_ORDER,
+    ChatterLine,
+    Comb,
+    share_of_harmonics,
+    strongest_line,
+)
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
     Revolution,
     about_given,
     from_spectrum,
     from_tacho,
+    mean_about_given,
     over_frames,
     stated_alone,
 )
-from chatter.detection.spectral.spectra import Frames, frames_of
+from chatter.detection.spectral.spectra import Frames, above_floor, frames_of, mean_of
 from chatter.detection.spectral.stated_speed import REFUTED, LinesOfRecord, OtherSpeed
 
 Array = NDArray[np.float64]
@@ -35,6 +49,11 @@ _SHORTEST = 0.25
 _UNKNOWN = 1.0
 #: frames that overlap: hop over length; most frames, of which those of long recordings are apart
 _HOP, _MOST_FRAMES = 0.25, 2000.0
+#: share of the lines a spacing apart that are there at rest, of what is no spindle that cuts, and
+#: share of the power of what the cut adds that is on the harmonics of a speed that is true
+_OF_MACHINE, _OF_CUT = 0.5, 0.8
+#: logarithm above the floor from which a bin counts to a line
+_STANDS_OUT = 2.0
 #: least ratio of a line to what is there at rest
 RATIO_AT_REST = 10.0
 
@@ -77,7 +96,8 @@ class Evidence:
 
     def comb(self, row: int) -> Comb:
         """Harmonics of the spindle in a frame."""
-        return comb_of(self.revolution, self.teeth, float(self.revolution.frequency[row]), self)
+        frequency = float(self.revolution.frequency[row])
+        return comb_of(self.revolution, self.teeth, frequency, self.frames.half_width)
 
     def above_rest(self, frequency: float, row: int) -> bool | None:
         """Whether a line is far above what is there at rest; None where no frame is at rest."""
@@ -88,9 +108,9 @@ class Evidence:
         return own > RATIO_AT_REST * float(self.rest[near].sum())
 
 
-def comb_of(revolution: Revolution, teeth: int | None, frequency: float, of: Evidence) -> Comb:
+def comb_of(revolution: Revolution, teeth: int | None, frequency: float, half_width: float) -> Comb:
     """Harmonics of a frequency of the spindle, Hz."""
-    return Comb(frequency, frequency * (teeth or 1), revolution.uncertainty, of.frames.half_width)
+    return Comb(frequency, frequency * (teeth or 1), revolution.uncertainty, half_width)
 
 
 def evidence_of(
@@ -106,13 +126,49 @@ def evidence_of(
     teeth : int or None
     """
     frames, revolution, other = _with_speed(recording, spindle_frequency, teeth)
-    return replace(_with_lines(recording, frames, revolution, teeth), other_speed=other)
+    found = _with_lines(recording, frames, revolution, teeth)
+    if other is not None and other.relation == REFUTED and _is_there_at_rest(found, other):
+        return found
+    return replace(found, other_speed=other)
+
+
+def _is_there_at_rest(evidence: Evidence, other: OtherSpeed) -> bool:
+    """Whether lines that speak for another speed are there without a cut: of a bearing, a fan.
+
+    Most lines a spacing apart are there then, or what the cut adds is on the stated harmonics.
+    """
+    if evidence.rest is None:
+        return False
+    frames = evidence.frames
+    above = above_floor(evidence.rest, frames.frequency, frames.length)
+    comb = Comb(other.spacing, other.spacing, 0.0, frames.half_width)
+    if share_of_harmonics(above, frames.frequency, comb) >= _OF_MACHINE:
+        return True
+    cut = ~evidence.idle & ~evidence.silent
+    return share_on_harmonics(evidence, cut) >= _OF_CUT
+
+
+def share_on_harmonics(evidence: Evidence, rows: slice | NDArray[np.bool_]) -> float:
+    """Share of the power of the lines of some frames that is on the harmonics of the spindle.
+
+    Lines are what stands above the floor, and far above what is there at rest.
+    """
+    frames = evidence.frames
+    comb = evidence.comb(int(np.median(np.arange(frames.time.size)[rows])))
+    power, above = mean_of(frames, rows)
+    lines = (above > _STANDS_OUT) & (frames.frequency > LOWEST_ORDER * comb.revolution)
+    if evidence.rest is not None:
+        lines &= power > RATIO_AT_REST * evidence.rest
+    total = float(power[lines].sum())
+    return 1.0 if total <= 0.0 else float(power[lines & ~comb.off(frames.frequency)].sum()) / total
 
 
 def evidence_at(recording: Recording, frequency: float, teeth: int | None) -> Evidence:
     """The same with a speed, Hz, that the lines show: no other is sought."""
     frames, long = _frames(recording, frequency, _REVOLUTIONS), _frames(recording, frequency, _LONG)
     revolution = about_given(long, frames, frequency, teeth or 1)
+    if revolution.source != "given":
+        revolution = revolution._replace(source="spectrum")
     return _with_lines(recording, frames, revolution, teeth)
 
 
@@ -136,8 +192,7 @@ def _with_lines(
     recording: Recording, frames: Frames, revolution: Revolution | None, teeth: int | None
 ) -> Evidence:
     silent = silent_frames(recording, frames)
-    levels = activity_levels(frames, silent)
-    idle = idle_frames(levels)
+    levels, idle = _activity(frames, revolution, teeth, silent)
     at_rest = None if idle is None else frames.power[idle & ~silent]
     if idle is None and silent.any():
         idle = silent
@@ -152,6 +207,24 @@ def _with_lines(
         for row, (power, logarithm) in enumerate(zip(frames.power, frames.above, strict=True))
     )
     return replace(bare, lines=lines)
+
+
+def _activity(
+    frames: Frames, revolution: Revolution | None, teeth: int | None, silent: NDArray[np.bool_]
+) -> tuple[Array, NDArray[np.bool_] | None]:
+    """Levels of the frames, dB, and which of them are at rest: as a whole, then by the teeth."""
+    levels = activity_levels(frames, silent)
+    if revolution is None:
+        return levels, idle_frames(levels)
+    combs = [
+        comb_of(revolution, teeth, float(one), frames.half_width) for one in revolution.frequency
+    ]
+    idle = frames_at_rest(levels, frames, combs)
+    if idle is not None:
+        return levels, idle
+    by_teeth = harmonic_levels(frames, combs, silent)
+    idle = frames_at_rest(by_teeth, frames, combs)
+    return (levels, None) if idle is None else (by_teeth, idle)
 
 
 def _with_speed(
@@ -179,9 +252,22 @@ def _with_speed(
     return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
 
 
-def other_speed_of(recording: Recording, given: float, teeth: int | None) -> OtherSpeed | None:
-    """Speed that the lines of a recording speak for, and not the given one, Hz; None where none."""
-    return LinesOfRecord(_frames(recording, given, _LONG), given, teeth).other_speed()
+class SpeedOfLines(NamedTuple):
+    """What the lines of a recording say of the stated speed."""
+
+    frequency: float  # Hz, as the lines correct it where it is some percent off
+    other: OtherSpeed | None
+
+
+def speed_of_lines(recording: Recording, given: float, teeth: int | None) -> SpeedOfLines:
+    """What the lines of a recording say of a speed that was stated, Hz."""
+    long = _frames(recording, given, _LONG)
+    lines = LinesOfRecord(long, given, teeth)
+    other = lines.other_speed()
+    if other is not None and other.relation == REFUTED:
+        return SpeedOfLines(given, other)
+    mean = mean_about_given(long, given, teeth or 1)
+    return SpeedOfLines(given if mean is None else lines.corrected(mean), other)
 
 
 def _stated_speed(

@@ -15,7 +15,7 @@ from chatter.detection.spectral.chatter_lines import (
 from chatter.detection.spectral.envelope import envelope_kurtosis
 from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence
 from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
-from chatter.detection.spectral.spectra import mean_of
+from chatter.detection.spectral.spectra import above_floor, mean_of
 
 #: standard deviations of the sidebands of a cut, and where all else is of a cut
 SIDEBANDS, _FEWER_SIDEBANDS = 5.0, 4.0
@@ -25,7 +25,7 @@ _SIDEBANDS_FOR_SURE, _TOGETHER = 8.0, 6.0
 _WITHOUT_SIDEBANDS = 0.5
 #: standard deviations of the harmonics of the teeth from which a record without idle frames cuts,
 #: from which it does so for sure, and between them where a line needs no sidebands
-CUTS, _CUTS_FOR_SURE, _CUTS_CLEARLY = 4.0, 8.0, 6.0
+CUTS, _CUTS_FOR_SURE, CUTS_CLEARLY = 4.0, 8.0, 6.0
 #: relative variation of amplitude and frequency up to which a line is as steady as electrical ones,
 #: which is no chatter where no idle frame shows what the machine does alone
 _STEADY, _STEADY_FREQUENCY = 0.03, 1e-4
@@ -56,7 +56,7 @@ def is_line_of_cut(evidence: Evidence, rows: slice) -> bool:
     them has to be most of the power, a limit cycle, and far above what is there without it.
     """
     line = line_of(evidence, rows)
-    if _may_be_harmonic(evidence, rows, line.frequency):
+    if may_be_harmonic(evidence, rows, line.frequency):
         return False
     sidebands = _median_sidebands(evidence, rows)
     count = rows.stop - rows.start
@@ -65,7 +65,7 @@ def is_line_of_cut(evidence: Evidence, rows: slice) -> bool:
     is_dominant = (
         count >= (_FRAMES if evidence.rest is not None else _MANY_FRAMES)
         and _alone(evidence, rows) >= _WITHOUT_SIDEBANDS
-        and _is_limit_cycle(evidence, rows, line.frequency)
+        and is_limit_cycle(evidence, rows, line.frequency)
     )
     if evidence.rest is not None:
         middle = (rows.start + rows.stop) // 2
@@ -80,10 +80,10 @@ def _is_of_cut_without_rest(
     """The same where no frame shows what the machine does alone."""
     harmonics = cut_significance(evidence)
     rose = _rose(evidence, rows, line)
-    wanders = _wanders(evidence, rows, line)
-    if is_dominant and harmonics > CUTS and (rose or (wanders and harmonics > _CUTS_CLEARLY)):
+    wanders = line_wanders(evidence, rows, line)
+    if is_dominant and harmonics > CUTS and (rose or (wanders and harmonics > CUTS_CLEARLY)):
         return True
-    if not wanders and _may_be_of_mains(evidence, line):
+    if not wanders and may_be_of_mains(evidence, line):
         return False
     is_of_motor = any(one in _OF_MOTOR for one in evidence.recording.quantities)
     # two signs of a cut together, as Stouffer (1949) adds them
@@ -117,9 +117,11 @@ def _median_sidebands(evidence: Evidence, rows: slice) -> float:
 
 
 def cut_significance(evidence: Evidence) -> float:
-    """Significance of the harmonics of a cut over what was recorded."""
+    """Significance of the harmonics of a cut over what was recorded, loud frames or not."""
     frames = evidence.frames
-    _, above = mean_of(frames, ~evidence.silent)
+    power = frames.power[~evidence.silent]
+    power = np.mean(power / np.maximum(power.sum(axis=1, keepdims=True), 1e-300), axis=0)
+    above = above_floor(power, frames.frequency, frames.length)
     row = evidence.frames.time.size // 2
     return harmonics_significance(above, frames.frequency, evidence.comb(row))
 
@@ -129,29 +131,38 @@ def _alone(evidence: Evidence, rows: slice) -> float:
     return float(np.median([line.alone for line in evidence.lines[rows]]))
 
 
-def _is_limit_cycle(evidence: Evidence, rows: slice, line: float) -> bool:
+def is_limit_cycle(
+    evidence: Evidence, rows: slice, line: float, most: float = _LIMIT_CYCLE
+) -> bool:
     """Whether the line swings as chatter does, and not as a mode that noise shakes."""
     frames = evidence.frames
     comb = evidence.comb((rows.start + rows.stop - 1) // 2)
     begin = float(frames.time[rows.start]) - 0.5 * frames.length
     end = float(frames.time[rows.stop - 1]) + 0.5 * frames.length
     kurtosis = envelope_kurtosis(evidence.recording, begin, end, line, comb.revolution)
-    return kurtosis < _LIMIT_CYCLE
+    return kurtosis < most
 
 
-def _may_be_harmonic(evidence: Evidence, rows: slice, line: float) -> bool:
+def may_be_harmonic(evidence: Evidence, rows: slice, line: float) -> bool:
     """Whether another speed that is not ruled out makes the line a harmonic."""
     if evidence.revolution.may_be_multiple:
         return _is_low_fraction(evidence, rows, line)
     if evidence.revolution.source != "given":
         return False
+    return is_low_harmonic_nearby(evidence, rows, line)
+
+
+def is_low_harmonic_nearby(evidence: Evidence, rows: slice, line: float) -> bool:
+    """Whether a speed some percent off makes the line a low harmonic, and has as clear ones."""
     comb = evidence.comb((rows.start + rows.stop - 1) // 2)
     order = max(round(line / comb.tooth), 1)
     tooth = line / order
     if order > _LOW_ORDER or abs(tooth / comb.tooth - 1.0) > ABOUT_GIVEN:
         return False
     other = comb._replace(revolution=comb.revolution * tooth / comb.tooth, tooth=tooth)
-    _, above = mean_of(evidence.frames, rows)
+    power, above = mean_of(evidence.frames, rows)
+    if evidence.rest is not None:  # lines of a bearing are there without the cut
+        above = np.where(power > RATIO_AT_REST * evidence.rest, above, 0.0)
     frequency = evidence.frames.frequency
     own = harmonics_significance(above, frequency, comb)
     # of the line and its multiples the other speed would be confirmed by what it is to explain
@@ -159,7 +170,7 @@ def _may_be_harmonic(evidence: Evidence, rows: slice, line: float) -> bool:
     return others >= own
 
 
-def _may_be_of_mains(evidence: Evidence, line: float) -> bool:
+def may_be_of_mains(evidence: Evidence, line: float) -> bool:
     """Whether a line is a low harmonic of the mains: others of them lie beside it as sidebands."""
     for mains in _MAINS:
         order = round(line / mains)
@@ -194,7 +205,7 @@ def _rose(evidence: Evidence, rows: slice, line: float) -> bool:
     return bool(np.median(power[rows]) > RATIO_AT_REST * np.median(power[others]))
 
 
-def _wanders(evidence: Evidence, rows: slice, line: float) -> bool:
+def line_wanders(evidence: Evidence, rows: slice, line: float) -> bool:
     """Whether amplitude and frequency of the line vary over the frames: no electrical one does."""
     frames = evidence.frames
     near = np.abs(frames.frequency - line) < frames.half_width

@@ -110,7 +110,13 @@ _SLOWEST, _FASTEST = 3.0, 700.0
 
 
 def about_given(long: Frames, frames: Frames, given: float, teeth: int) -> Revolution:
-    """Frequency over the frames, where one is given, Hz: the lines near it decide.
+    """Frequency over the frames, where one is given, Hz: the lines near it decide."""
+    mean = mean_about_given(long, given, teeth)
+    return stated_alone(frames, given) if mean is None else over_frames(frames, mean, teeth)
+
+
+def mean_about_given(long: Frames, given: float, teeth: int) -> float | None:
+    """Mean frequency where one is given, Hz; None where no lines near it show it.
 
     What is set on the machine, and what a note says, may be some percent off. The mean is read off
     longer frames, in which lines lie further apart for their width.
@@ -122,11 +128,10 @@ def about_given(long: Frames, frames: Frames, given: float, teeth: int) -> Revol
         everywhere, long.step, given * (1.0 - _NEAR_GIVEN), given * (1.0 + _NEAR_GIVEN), teeth
     )
     if not found.significance > _PLAUSIBLE:
-        return stated_alone(frames, given)
-    mean = near.frequency
+        return None
     if found.score > _BETTER * near.score and _explains_more(long, found, near, teeth):
-        mean = found.frequency
-    return over_frames(frames, mean, teeth)
+        return found.frequency
+    return near.frequency
 
 
 def stated_alone(frames: Frames, given: float) -> Revolution:

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.spectral.activity import idle_frames
+from chatter.detection.spectral.activity import are_cutting, idle_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
-from chatter.detection.spectral.frame_evidence import Evidence, other_speed_of
+from chatter.detection.spectral.frame_evidence import Evidence, SpeedOfLines, speed_of_lines
 from chatter.detection.spectral.line_of_cut import is_line_of_cut
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
@@ -32,7 +32,7 @@ from chatter.detection.spectral.segments import (
     STABLE,
 )
 from chatter.detection.spectral.spectra import Frames, above_floor, added_up, spectrum_of
-from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
+from chatter.detection.spectral.stated_speed import REFUTED
 
 Array = NDArray[np.float64]
 
@@ -63,6 +63,8 @@ class Observation(NamedTuple):
     spindle_frequency: float  # Hz
     #: whether the lines of late do not fit the given speed, but another one far better
     speed_is_refuted: bool = False
+    #: whether the lines of late showed a speed some percent off the given one, which holds since
+    speed_is_corrected: bool = False
 
 
 class _Window(NamedTuple):
@@ -84,13 +86,14 @@ class RunningDetection:
         Of any length: its channels, its step of time and what they are of. Its samples are not
         taken.
     spindle_frequency : float
-        Hz, right within 1.5 %.
+        Hz, right within 12 %: the lines correct it, at once where it is right within 1.5 %.
     teeth : int or None
     """
 
     def __init__(self, start: Recording, spindle_frequency: float, teeth: int | None) -> None:
         self._start = start
-        self._speed = self._given = spindle_frequency
+        #: Hz: as it is read off the lines, about what is taken for given, and as it was stated
+        self._speed = self._given = self._stated = spindle_frequency
         self._teeth = teeth
         self._hop = max(round(1.0 / (spindle_frequency * start.time_step)), 1)
         length = max(_REVOLUTIONS / spindle_frequency, _SHORTEST)
@@ -105,9 +108,12 @@ class RunningDetection:
         self._large = 0
         self._verdict = STABLE
         self._speed_is_refuted = False
+        #: level below which nothing is cut and windows for which that was asked, and the answer
+        self._below: tuple[float, int] = (math.nan, 0)
+        self._cuts_when_quiet = False
         # beside the verdicts, which it would hold up
         self._background = ThreadPoolExecutor(1)
-        self._checked: Future[OtherSpeed | None] | None = None
+        self._checked: Future[SpeedOfLines] | None = None
 
     @property
     def checks_speed(self) -> bool:
@@ -133,8 +139,9 @@ class RunningDetection:
         line = window.line
         frequency = line.frequency if self._verdict == CHATTER else math.nan
         return Observation(
-            time, self._verdict, frequency, line.share, self._speed, self._speed_is_refuted
-        )
+            time, self._verdict, frequency, line.share, self._speed,
+            self._speed_is_refuted, self._given != self._stated,
+        )  # fmt: skip
 
     def _verdict_of(self, window: _Window) -> str:
         chattered = self._verdict == CHATTER
@@ -180,14 +187,34 @@ class RunningDetection:
     def _check_speed(self) -> None:
         """Ask every so many windows, beside the verdicts, whether the lines refute the speed."""
         if self._checked is not None and self._checked.done():
-            other = self._checked.result()
-            self._speed_is_refuted = other is not None and other.relation == REFUTED
+            found = self._checked.result()
+            self._speed_is_refuted = found.other is not None and found.other.relation == REFUTED
+            if abs(found.frequency / self._given - 1.0) > _RANGE:
+                self._take_speed(found.frequency)
             self._checked = None
         if self._checked is None and (self._count // self._quarter + 1) % _CHECKED_EVERY == 0:
             joined = _joined([one.recording for one in self._history])
             self._checked = self._background.submit(
-                other_speed_of, joined, self._given, self._teeth
+                speed_of_lines, joined, self._given, self._teeth
             )
+
+    def _take_speed(self, frequency: float) -> None:
+        """Go on with a speed, Hz, by which the windows of late have other lines."""
+        self._given = self._speed = frequency
+        self._history = deque(
+            (
+                one._replace(
+                    line=strongest_line(
+                        one.frames.power[0],
+                        one.frames.above[0],
+                        one.frames.frequency,
+                        self._comb(one.frames),
+                    )
+                )
+                for one in self._history
+            ),
+            maxlen=_HISTORY,
+        )
 
     def _evidence(self, window: _Window) -> tuple[Evidence, slice]:
         """What the windows of late say, and in which of them the line of the last one is."""
@@ -242,7 +269,25 @@ class RunningDetection:
         """Level below which nothing is cut, dB; -inf where the levels make no two classes."""
         levels = np.array(self._levels)
         idle = idle_frames(levels)
-        return -math.inf if idle is None else float(levels[~idle].min())
+        if idle is None:
+            return -math.inf
+        level = float(levels[~idle].min())
+        return -math.inf if self._cuts_below(level) else level
+
+    def _cuts_below(self, level: float) -> bool:
+        """Whether the teeth are heard below a level, dB, that chatter alone exceeds."""
+        if self._below != (level, len(self._history)):
+            self._below = level, len(self._history)
+            quiet = [one for one in self._history if one.level < level]
+            self._cuts_when_quiet = len(quiet) > 0 and self._are_cutting(quiet)
+        return self._cuts_when_quiet
+
+    def _are_cutting(self, windows: list[_Window]) -> bool:
+        frames = windows[-1].frames._replace(
+            power=added_up(np.stack([one.spectra for one in windows], axis=1))
+        )
+        combs = [self._comb(frames)] * len(windows)
+        return are_cutting(frames, combs, np.arange(len(windows)))
 
     def _is_idle(self) -> bool:
         return self._levels[-1] < self._idle_level()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ from chatter.detection.spectral.line_of_cut import (
     line_of,
     sidebands_of,
 )
+from chatter.detection.spectral.several_lines import LinesOfCut, all_lines_of_cut
 
 CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
 
@@ -85,16 +87,24 @@ def segments_of(evidence: Evidence) -> list[Segment]:
 
 def _with_speed(evidence: Evidence) -> list[Segment]:
     verdicts = _verdicts(evidence)
+    judged = np.array([one in (STABLE, NOT_JUDGED) for one in verdicts])
+    several = all_lines_of_cut(evidence, judged) if _is_long_enough(evidence) else []
+    for one in several:
+        verdicts[one.rows] = [CHATTER] * (one.rows.stop - one.rows.start)
     return [
-        _segment(evidence, verdicts[first], slice(first, last)) for first, last in _runs(verdicts)
+        _segment(evidence, verdicts[first], slice(first, last), several)
+        for first, last in _runs(verdicts)
     ]
+
+
+def _is_long_enough(evidence: Evidence) -> bool:
+    return evidence.frames.length * evidence.revolution.mean >= _FEWEST_REVOLUTIONS
 
 
 def _verdicts(evidence: Evidence) -> list[str]:
     """Verdict of each frame."""
     count = len(evidence.lines)
-    too_short = evidence.frames.length * evidence.revolution.mean < _FEWEST_REVOLUTIONS
-    if too_short:
+    if not _is_long_enough(evidence):
         return [NOT_JUDGED] * count
     idle = np.zeros(count, dtype=bool) if evidence.idle is None else evidence.idle
     verdicts = [IDLE if one else STABLE for one in idle]
@@ -185,17 +195,38 @@ def half_tooth_shares(evidence: Evidence) -> NDArray[np.float64]:
     return halves / np.maximum(total, 1e-300)
 
 
-def _segment(evidence: Evidence, verdict: str, rows: slice) -> Segment:
+def _segment(
+    evidence: Evidence, verdict: str, rows: slice, several: Sequence[LinesOfCut]
+) -> Segment:
     begin, end = _bounds(evidence, rows)
     speed = float(np.median(evidence.revolution.frequency[rows]))
     lines = evidence.lines[rows]
     share = float(np.median([line.share for line in lines]))
     if verdict == CHATTER:
+        inside = [one for one in several if rows.start <= one.rows.start < rows.stop]
+        if inside and (share < BEGINS or any(len(one.frequencies) > 1 for one in inside)):
+            return _of_several_lines(inside, begin, end, speed)
         return _chatter_segment(evidence, rows, begin, end, speed)
     confidence, reason = {
         STABLE: _of_stable, IDLE: _of_idle, NOT_JUDGED: _of_not_judged
     }[verdict](evidence, rows)  # fmt: skip
     return Segment(begin, end, verdict, math.nan, "none", confidence, share, speed, reason)
+
+
+def _of_several_lines(
+    found: Sequence[LinesOfCut], begin: float, end: float, speed: float
+) -> Segment:
+    longest = max(found, key=lambda one: one.rows.stop - one.rows.start)
+    names = ", ".join(f"{one:.1f}" for one in longest.frequencies)
+    reason = (
+        f"{longest.share:.0%} of the power is lines at {names} Hz, off the harmonics of the "
+        "spindle, which keep their amplitude as chatter does"
+    )
+    strength = float(np.clip((longest.share - BEGINS) / 0.4, 0.0, 1.0))
+    return Segment(
+        begin, end, CHATTER, longest.frequencies[0], "hopf", 0.5 + 0.2 * strength, longest.share,
+        speed, reason,
+    )  # fmt: skip
 
 
 def _chatter_segment(

@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from chatter.detection.spectral.chatter_lines import LOWEST_ORDER
-from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence, evidence_at
+from chatter.detection.spectral.frame_evidence import Evidence, evidence_at, share_on_harmonics
 from chatter.detection.spectral.segments import (
     CHATTER,
     IDLE,
@@ -22,16 +21,14 @@ from chatter.detection.spectral.segments import (
     Segment,
     segments_of,
 )
-from chatter.detection.spectral.spectra import mean_of
 from chatter.detection.spectral.stated_speed import FASTER, REFUTED
 
 #: confidence of a verdict, at the most, while the speed is in doubt
 _IN_DOUBT = 0.7
 #: of chatter, at the most, that another speed has as stable
 _UNCERTAIN = 0.5
-#: share of the power of the lines that the harmonics hold of a stable cut, at the least, and the
-#: logarithm above the floor from which a bin counts to a line
-_ON_HARMONICS, _STANDS_OUT = 0.5, 2.0
+#: share of the power of the lines that the harmonics hold of a stable cut, at the least
+_ON_HARMONICS = 0.5
 #: relative difference of speeds that are the same
 _SAME = 5e-3
 
@@ -77,21 +74,6 @@ def _supported(segment: Segment, evidence: Evidence) -> Segment:
         "another"
     )
     return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
-
-
-def share_on_harmonics(evidence: Evidence, rows: slice) -> float:
-    """Share of the power of the lines of some frames that is on the harmonics of the spindle.
-
-    Lines are what stands above the floor, and far above what is there at rest.
-    """
-    frames = evidence.frames
-    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
-    power, above = mean_of(frames, rows)
-    lines = (above > _STANDS_OUT) & (frames.frequency > LOWEST_ORDER * comb.revolution)
-    if evidence.rest is not None:
-        lines &= power > RATIO_AT_REST * evidence.rest
-    total = float(power[lines].sum())
-    return 1.0 if total <= 0.0 else float(power[lines & ~comb.off(frames.frequency)].sum()) / total
 
 
 def _stable_at_both(evidence: Evidence, own: list[Segment], faster: list[Segment]) -> list[Segment]:

@@ -73,6 +73,34 @@ def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(fa
     assert not observed[0].speed_is_refuted
 
 
+@pytest.mark.parametrize("factor", [0.9, 0.94, 1.06, 1.1])
+@pytest.mark.parametrize(("begin", "verdict"), [(0.0, "chatter"), (9.0, "stable")])
+def test_a_speed_some_percent_off_is_read_off_the_lines(factor, begin, verdict):
+    values = made(begin)[:, None]
+    found = running(values[:, 0], factor * REVOLUTION)
+    observed = []
+    for part in np.array_split(values, 40):
+        observed += found.take(part)
+        deadline = clock_time.monotonic() + 20.0
+        while found.checks_speed and clock_time.monotonic() < deadline:
+            clock_time.sleep(0.005)
+    assert not observed[0].speed_is_corrected
+    last = observed[-1]
+    assert last.speed_is_corrected
+    assert not last.speed_is_refuted
+    assert last.spindle_frequency == pytest.approx(REVOLUTION, rel=2e-3)
+    assert last.verdict == verdict
+    if verdict == "chatter":
+        assert last.chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
+
+
+def test_a_stable_cut_after_chatter_is_not_idle():
+    values = np.concatenate([made(9.0, 2.0), made(0.0, 2.0), made(9.0, 4.0)])
+    observed = running(values).take(values[:, None])
+    assert {one.verdict for one in observed if 3.2 < one.time < 3.9} == {"chatter"}
+    assert {one.verdict for one in observed if one.time > 5.5} == {"stable"}
+
+
 def test_the_right_speed_is_not_refuted():
     for begin in (0.0, 9.0):
         values = made(begin)[:, None]
@@ -82,7 +110,7 @@ def test_the_right_speed_is_not_refuted():
             observed += found.take(part)
             while found.checks_speed:
                 clock_time.sleep(0.005)
-        assert not any(one.speed_is_refuted for one in observed)
+        assert not any(one.speed_is_refuted or one.speed_is_corrected for one in observed)
         assert observed[-1].verdict == ("chatter" if begin == 0.0 else "stable")
 
 
