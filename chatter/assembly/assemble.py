@@ -25,7 +25,7 @@ from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.description.wording import nearest
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, csv_text, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, csv_text, finite_or_none, write_results
 from chatter.stability.lobes import lobes
 from dynamics.identification.result import ModalFit
 from dynamics.modal.modes import Mode
@@ -60,7 +60,7 @@ class StickOutLobes:
 
 
 @dataclass(frozen=True, eq=False)
-class Assembly:
+class Assembly(NotebookResult):
     """Tool point of an assembly over the stick-out.
 
     Parameters

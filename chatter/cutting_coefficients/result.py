@@ -27,7 +27,13 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import to_digits
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
+from chatter.io.result_files import (
+    NotebookResult,
+    as_json,
+    finite_or_none,
+    short_repr,
+    write_results,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,7 +47,7 @@ _LINEAR_SHARE = 0.95
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Coefficients:
+class Coefficients(NotebookResult):
     """Cutting coefficients of a series of cuts.
 
     Parameters

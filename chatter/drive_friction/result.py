@@ -14,7 +14,7 @@ from chatter.description.formatting import to_digits
 from chatter.drive_friction.drive_records import DriveRecords
 from chatter.drive_friction.friction_laws import FitSettings, FittedFriction
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,7 +54,7 @@ class TriedFriction:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DriveFriction:
+class DriveFriction(NotebookResult):
     """Friction and inertia of a drive."""
 
     given: DriveRecords

@@ -18,14 +18,14 @@ from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.io.headings import signal_unit
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import NotebookResult, as_json, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(NotebookResult):
     """Errors of a case by run and channel.
 
     Parameters
@@ -53,6 +53,14 @@ class Comparison:
             "runs": [one._asdict() for one in self.errors],
             "signature": self.signature.summary() if self.signature is not None else None,
         }
+
+    def sentences(self) -> list[str]:
+        """Return what the checks found, and the error of each run and channel."""
+        return [str(one.as_dict()["description"]) for one in self.checks] + [
+            f"{one.run}, {one.channel}: error {100.0 * one.relative:.3g} % of the signal, "
+            f"{one.over_noise:.3g} times the noise"
+            for one in self.errors
+        ]
 
     def plot(self) -> Figure:
         """Picture of measured signals and their residuals."""

@@ -41,7 +41,7 @@ from chatter.explain.selection.candidates import Candidate, Progress, Stage
 from chatter.explain.selection.discriminating_test import discriminating_test
 from chatter.explain.selection.search import Search, search
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +51,7 @@ EXPLAINED_IN_PART = "explained-in-part"
 
 
 @dataclass(frozen=True, eq=False)
-class Explanation:
+class Explanation(NotebookResult):
     """Verdict on a measurement.
 
     Parameters
@@ -334,7 +334,7 @@ class Explanation:
 
 
 @dataclass(frozen=True, eq=False)
-class Contradiction:
+class Contradiction(NotebookResult):
     """Verdict on data that would mislead any search for effects.
 
     Parameters

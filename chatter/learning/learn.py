@@ -20,7 +20,14 @@ from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, csv_text, finite_or_none, short_repr, write_results
+from chatter.io.result_files import (
+    NotebookResult,
+    as_json,
+    csv_text,
+    finite_or_none,
+    short_repr,
+    write_results,
+)
 from chatter.learning.contradictions import contradictions, surprises
 from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
@@ -47,7 +54,7 @@ _WIDE_SCATTER = 0.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Learnt:
+class Learnt(NotebookResult):
     """What tests leave possible.
 
     Parameters

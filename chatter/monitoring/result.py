@@ -12,7 +12,7 @@ from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
 from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Advice:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DetectedChatter:
+class DetectedChatter(NotebookResult):
     """Verdicts over a recording.
 
     Parameters

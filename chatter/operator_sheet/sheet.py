@@ -13,7 +13,7 @@ from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.whole_files import write_whole
-from chatter.io.result_files import as_json, presentation, short_repr, write_results
+from chatter.io.result_files import NotebookResult, as_json, presentation, short_repr, write_results
 from chatter.operator_sheet.cuts import CaseCuts, cuts_of
 from chatter.operator_sheet.variation import variation_that_helps
 from chatter.operator_sheet.workbook import workbook_of
@@ -23,7 +23,7 @@ from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sheet:
+class Sheet(NotebookResult):
     """Cuts worth making of one or several cases: tools, materials, engagements.
 
     Parameters

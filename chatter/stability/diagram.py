@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from chatter.stability.pockets import SPEED_MARGIN, Pocket, depth_margin
 
 #: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
+#: pockets that a notebook names
+_POCKETS_TOLD = 3
 
 
 @dataclass(frozen=True)
@@ -330,6 +332,8 @@ class StabilityDiagram(SavedResult):
     def sentences(self) -> list[str]:
         """Return sentences for the terminal."""
         lines, summary = _report_of(self.excluded), self.summary()
+        if self.is_over_speed:
+            return [*lines, *_sentences_over_speed(summary)]
         for name in ("lowest_limit", "highest_limit"):
             end = summary[name]
             depth = end["critical_depth_mm"]
@@ -378,6 +382,31 @@ class StabilityDiagram(SavedResult):
             crossings = " ".join(f"{depth * 1e3:.7g}" for depth in limits.crossings[index])
             row += [crossings, f"{self.max_depth[index] * 1e3:.7g}", ""]
         return row
+
+
+def _sentences_over_speed(summary: Mapping[str, Any]) -> list[str]:
+    """Lowest limit, verdict on the cut, and the pockets that remove most."""
+    lowest, cut = summary["lowest_limit"], summary["operating_point"]
+    deepest = summary["max_axial_depth_mm"]
+    if lowest["critical_depth_mm"] is None:
+        found = f"no limit down to {deepest:.4g} mm"
+    else:
+        found = (
+            f"lowest limit {lowest['critical_depth_mm']:.4g} mm, at "
+            f"{lowest['spindle_speed_rpm']:.0f} rpm, chatter at "
+            f"{lowest['chatter_frequency_Hz']:.0f} Hz"
+        )
+    verdict = "stable" if cut["stable"] else "chatter"
+    sure = "" if cut["certain"] else " by the linear analysis, not certain"
+    judged = (
+        f"{verdict}{sure}: {cut['axial_depth_mm']:.4g} mm at {cut['spindle_speed_rpm']:.0f} rpm"
+    )
+    best = sorted(summary["pockets"], key=lambda one: -one["removal_rate_cm3_per_min"])
+    return [judged, found] + [
+        f"pocket: {one['axial_depth_mm']:.4g} mm at {one['spindle_speed_rpm']:.0f} rpm, "
+        f"{one['removal_rate_cm3_per_min']:.3g} cm^3/min"
+        for one in best[:_POCKETS_TOLD]
+    ]
 
 
 def _pocket_summary(pocket: Pocket) -> dict:

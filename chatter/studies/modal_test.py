@@ -21,7 +21,7 @@ from chatter.io.hammer_records import (
     read_hammer_records,
 )
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import NotebookResult, as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.hammer.averaging import HammerTest, hammer_test
 from dynamics.frf.hammer.record import Finding
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class ModalTest:
+class ModalTest(NotebookResult):
     """Modal parameters of a measured structure.
 
     Parameters
@@ -90,6 +90,14 @@ class ModalTest:
         return f"# {self.title}\n" + "".join(
             _mode_table(mode, self.side) for mode in self.fit.identified
         )
+
+    def sentences(self) -> list[str]:
+        """Return the title, and a line for each mode that was identified."""
+        return [self.title] + [
+            f"{mode.frequency:.4g} Hz, damping {mode.damping:.2%}, "
+            + (f"{mode.mass:.4g} kg" if mode.mass else "no mass")
+            for mode in self.fit.identified
+        ]
 
     def plot(self) -> Figure:
         """Return the picture of measured against fitted."""

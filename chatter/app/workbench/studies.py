@@ -175,22 +175,13 @@ def run_measurement(
     report(f"{name}: reading the signals", 0.0)
     if name == "compare":
         result: Any = chatter.compare(measurement, given)
-        sentences = _of_comparison(result)
+        sentences = result.sentences()
     else:
         result = chatter.explain(measurement, given, report)
         sentences = _of_explanation(result.summary())
     save_result(result, folder, {"title": name, **call})
     write_residuals(result, folder)
     write_call(folder, {**read_call(folder), "sentences": sentences})
-
-
-def _of_comparison(result: Any) -> list[str]:
-    found = [
-        f"{one.run}, {one.channel}: error {100.0 * one.relative:.3g} % of the signal, "
-        f"{one.over_noise:.3g} times the noise"
-        for one in result.errors
-    ]
-    return [f"{one.as_dict()['description']}" for one in result.checks] + found
 
 
 def _of_explanation(summary: Mapping[str, Any]) -> list[str]:

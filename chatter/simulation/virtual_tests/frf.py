@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from chatter.description.brief_repr import BriefRepr
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 from dynamics.frf.container import Frf
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class FrfCurve(BriefRepr):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FrfResult(BriefRepr):
+class FrfResult(BriefRepr, NotebookResult):
     """FRFs of a machine, by name."""
 
     machine: str

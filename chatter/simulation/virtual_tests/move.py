@@ -16,7 +16,7 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import NotebookResult, as_json, write_results
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.machine.description import Drive, Machine
 from dynamics.machine.moving_structure import MachinesAlong
@@ -46,7 +46,7 @@ class MovePlan:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MoveResult(BriefRepr):
+class MoveResult(BriefRepr, NotebookResult):
     """Signals of a move; columns are the axes of the plan."""
 
     name: str

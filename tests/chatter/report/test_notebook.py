@@ -1,13 +1,25 @@
 """Results in a notebook: sentences escaped, picture inlined."""
 
+import ast
 import base64
+import gzip
+import json
 import re
+import sys
+from types import SimpleNamespace
 
+import numpy as np
+import panel
 import pytest
+from matplotlib.figure import Figure
 
 import chatter
 from chatter.description.case import loads
+from chatter.plots.interactive_picture import interactive_picture
 from tests.cases import TOOL_OF_922_HERTZ
+from tests.chatter.studies.test_modal_test import write_set
+from tests.dynamics.frf.hammer.hammer_records import CLOSE
+from tests.places import ROOT
 
 
 @pytest.mark.parametrize("call", [chatter.check, chatter.simulate])
@@ -24,3 +36,120 @@ def test_a_check_shows_its_verdict_and_its_table():
     html = result._repr_html_()
     assert result.sentences()[0] in html
     assert html.count("<tr>") == len(result.rows())
+
+
+@pytest.fixture
+def notebook(monkeypatch):
+    """A kernel of Jupyter with Panel loaded in it."""
+    shell = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=object()))
+    monkeypatch.setitem(sys.modules, "IPython", shell)
+    monkeypatch.setattr(panel.extension, "_loaded", True)
+
+
+def drawn_data(html):
+    """Columns of every source in the script of Bokeh."""
+    (text,) = re.findall(r"const docs_json = '(.*)';\n", html)
+    plain = text.encode().decode("unicode_escape")
+    columns: list[dict] = []
+
+    def look(value):
+        if isinstance(value, dict):
+            if value.get("name") == "ColumnDataSource":
+                entries = value["attributes"]["data"]["entries"]
+                columns.append({key: values_of(one) for key, one in entries})
+            for one in value.values():
+                look(one)
+        if isinstance(value, list):
+            for one in value:
+                look(one)
+
+    look(json.loads(plain))
+    return columns
+
+
+def values_of(column):
+    if isinstance(column, dict) and column.get("type") == "ndarray":
+        content = gzip.decompress(base64.b64decode(column["array"]["data"]))
+        return np.frombuffer(content, column["dtype"]).reshape(column["shape"])
+    return column
+
+
+@pytest.mark.usefixtures("notebook")
+def test_a_diagram_can_be_zoomed_in_a_notebook():
+    case = loads(TOOL_OF_922_HERTZ).patch({"title": "<script>x</script>"})
+    diagram = chatter.lobes(case, "zero-order")
+    html = diagram._repr_html_()
+    assert "<script>x" not in html
+    assert "data:image/png" in html
+    speeds = diagram.limits.spindle_speed * 30.0 / np.pi
+    drawn = [one for one in drawn_data(html) if len(one.get("x", ())) >= 0.9 * len(speeds)]
+    lowest = diagram.limits.critical_depth.min() * 1e3
+    assert min(np.nanmin(one["y"]) for one in drawn) == pytest.approx(lowest, rel=1e-6)
+
+
+def test_lines_stand_where_they_were_drawn():
+    figure = Figure()
+    axes = figure.subplots()
+    axes.plot([1.0, 2.0, 4.0], [3.0, 5.0, 1.0], label="limit")
+    axes.axvline(3.0)
+    axes.set(xlim=(0.0, 5.0), ylim=(0.0, 10.0))
+    lines = drawn_data(interactive_picture(figure))
+    assert any(np.allclose(one["y"], [3.0, 5.0, 1.0]) for one in lines if len(one["y"]) == 3)
+    (upright,) = [one for one in lines if len(one["x"]) == 2]
+    assert upright["x"] == pytest.approx([3.0, 3.0])
+    assert upright["y"] == pytest.approx([0.0, 10.0])
+
+
+def test_an_image_has_its_first_row_where_it_was_drawn():
+    figure = Figure()
+    rows = np.array([[[255, 0, 0, 255]], [[0, 0, 255, 255]]], dtype=np.uint8)
+    figure.subplots().imshow(rows, extent=(0.0, 1.0, 0.0, 2.0), origin="upper")
+    (drawn,) = [one for one in drawn_data(interactive_picture(figure)) if "image" in one]
+    lowest = values_of(drawn["image"][0])[0]
+    assert lowest.view(np.uint8).tolist() == [0, 0, 255, 255]
+
+
+def test_a_map_stays_a_picture():
+    figure = Figure()
+    figure.subplots().pcolormesh(np.eye(3))
+    assert interactive_picture(figure) is None
+
+
+def classes_that_draw():
+    """Classes of the package with a method `plot`, and what they are made from."""
+    for path in sorted((ROOT / "chatter").rglob("*.py")):
+        for one in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not isinstance(one, ast.ClassDef):
+                continue
+            if "plot" in [
+                method.name for method in one.body if isinstance(method, ast.FunctionDef)
+            ]:
+                yield one.name, {base.id for base in one.bases if isinstance(base, ast.Name)}
+
+
+def test_every_result_that_draws_itself_shows_itself():
+    found = dict(classes_that_draw())
+    assert len(found) > 12
+    missing = [name for name, bases in found.items() if not bases & {"NotebookResult", "Protocol"}]
+    assert [one for one in missing if one != "NotebookResult"] == []
+
+
+def test_a_diagram_says_its_verdict_its_limit_and_its_pockets():
+    diagram = chatter.lobes(loads(TOOL_OF_922_HERTZ), "zero-order")
+    html, told = diagram._repr_html_(), diagram.summary()
+    assert f"lowest limit {told['lowest_limit']['critical_depth_mm']:.4g} mm" in html
+    assert f"{told['operating_point']['spindle_speed_rpm']:.0f} rpm" in html
+
+
+def test_pages_of_a_sheet_are_all_shown():
+    sheet = chatter.sheet(loads(TOOL_OF_922_HERTZ))
+    assert sheet._repr_html_().count("data:image/png") == len(sheet.plot())
+
+
+def test_a_modal_test_says_its_modes(tmp_path):
+    write_set(tmp_path, 0)
+    html = chatter.modes(tmp_path)._repr_html_()
+    text = re.sub("<[^>]+>", " ", html.split("<img")[0])
+    told = [float(one) for one in re.findall(r"([\d.]+) Hz, damping", text)]
+    assert told == pytest.approx([mode[0] for mode in CLOSE.modes], rel=0.002)
+    assert len(text) < 500
