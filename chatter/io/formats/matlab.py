@@ -15,7 +15,8 @@ from chatter.io.files import read_content
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_tables
 from chatter.io.formats.matlab_hdf5 import variables_of_hdf5
-from chatter.io.formats.matlab_records import DEPTH, Node, require_count, tables_of_variables
+from chatter.io.formats.matlab_nodes import DEPTH, Node, require_count
+from chatter.io.formats.matlab_records import tables_of_variables
 from chatter.io.formats.named_arrays import require_size
 from chatter.io.formats.records import Tables, of_file, only_record
 from dynamics.frf.container import MeasurementError
@@ -105,7 +106,8 @@ MATLAB = Format(
     name="matlab",
     label="MAT of MATLAB",
     help="numeric variables and fields of structures, such as `force_N`; structures of the same "
-    'fields are records; matrices with "--columns"; a number `fs` gives the time; version 7.3 '
+    'fields are records, and matrices with a time; matrices with "--columns"; functions as Testlab '
+    "exports them; a number `fs` gives the time; version 7.3 "
     'needs "chatter[formats]"',
     extensions=(".mat",),
     read_frfs=lambda path: frfs_of_tables(read_records(path)),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from chatter.io.formats.matlab_records import DEPTH, Node, require_count
+from chatter.io.formats.matlab_nodes import DEPTH, Node, require_count
 from chatter.io.formats.named_arrays import require_size
 from dynamics.frf.container import MeasurementError
 

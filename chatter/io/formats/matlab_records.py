@@ -4,43 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TypeAlias
 
 import numpy as np
 
+from chatter.io.formats.matlab_nodes import Node, Variables
 from chatter.io.formats.named_arrays import table_of_arrays
+from chatter.io.formats.testlab import testlab_records
 from chatter.io.table import Table
 from dynamics.frf.container import MeasurementError
 
-#: numbers, text, fields of a structure, or elements of a structure or cell array
-Node: TypeAlias = "np.ndarray | str | dict[str, Node] | list[Node]"
-Variables: TypeAlias = "Mapping[str, Node]"
-
-#: how deep structures of structures are followed, and most elements of one array of them
-DEPTH, MOST_ELEMENTS = 4, 4096
+#: share of the step by which those of a time differ at the most
+_EQUAL = 0.1
 #: fields of a signal that hold its time, its numbers and its unit, in lower case
 _TIMES = ("t", "time")
 _VALUES = ("y", "data", "values", "value", "signal")
 _UNITS = ("unit", "units")
 
 
-def require_count(path: Path, name: str, count: int) -> None:
-    """Raise MeasurementError where an array of structures has more elements than are read."""
-    if count > MOST_ELEMENTS:
-        raise MeasurementError(
-            f"{path}: {name} has {count} elements; at most {MOST_ELEMENTS} are read"
-        )
-
-
 def tables_of_variables(path: Path, variables: Variables) -> dict[str, Table]:
     """Tables of the records that the variables hold, by name.
 
     The elements of a structure array are a record each, and so are structures with the same
-    fields, two or more vectors beside the time; what stands beside them, such as a sampling
-    rate, holds for all. Structures of one vector, with or without its time, are signals of one
-    record. Everything else is one record.
+    fields, two or more vectors beside the time, and matrices of as many columns whose first one
+    is a time; what stands beside them, such as a sampling rate, holds for all. Structures of one
+    vector, with or without its time, are signals of one record. Everything else is one record.
     MeasurementError if there is no array of numbers, or those of a record differ in length or time.
     """
+    of_testlab = testlab_records(path, variables)
+    if of_testlab is not None:
+        return {name: table_of_arrays(path, dict(_leaves(one))) for name, one in of_testlab.items()}
     records, common = _records(variables)
     if not records:
         return {"": table_of_arrays(path, dict(_leaves(_signals(path, variables))))}
@@ -53,6 +45,9 @@ def tables_of_variables(path: Path, variables: Variables) -> dict[str, Table]:
 
 def _records(variables: Variables) -> tuple[dict[str, Variables], Variables]:
     """Records by name, and what stands beside them; none where all is one record."""
+    matrices = _matrices_with_time(variables)
+    if matrices:
+        return matrices, {}
     if len(variables) == 1:
         ((name, only),) = variables.items()
         if isinstance(only, dict):
@@ -69,6 +64,26 @@ def _records(variables: Variables) -> tuple[dict[str, Variables], Variables]:
         return {}, {}
     names = {name.partition("(")[0] for name in found} | set(found)
     return found, {name: node for name, node in variables.items() if name not in names}
+
+
+def _matrices_with_time(variables: Variables) -> dict[str, Variables]:
+    """Matrices of as many columns, the first of each a time; none where there are not two."""
+    arrays = {n: a for n, a in variables.items() if isinstance(a, np.ndarray) and a.size > 1}
+    if len(arrays) < 2 or any(isinstance(one, (dict, list)) for one in variables.values()):
+        return {}
+    if any(one.ndim != 2 or one.dtype.kind not in "fiu" for one in arrays.values()):
+        return {}
+    rows = [one if one.shape[0] > one.shape[1] else one.T for one in arrays.values()]
+    counts = {one.shape[1] for one in rows}
+    if len(counts) > 1 or counts == {1} or not all(_is_time(one[:, 0]) for one in rows):
+        return {}
+    return {name: {name: one} for name, one in arrays.items()}
+
+
+def _is_time(values: np.ndarray) -> bool:
+    """Whether numbers increase by equal steps."""
+    steps = np.diff(values.astype(float))
+    return bool(np.all(steps > 0.0) and np.ptp(steps) < _EQUAL * steps.mean())
 
 
 def _vectors(node: Mapping[str, Node]) -> list[str]:
