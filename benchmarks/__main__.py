@@ -12,9 +12,15 @@ import json
 import os
 from pathlib import Path
 
-from benchmarks.figures import closing_the_loop, stability, starting, time_domain
+from benchmarks.figures import closing_the_loop, stability, starting, tap_tests, time_domain
 
-FIGURES = (*starting.FIGURES, *stability.FIGURES, *time_domain.FIGURES, *closing_the_loop.FIGURES)
+FIGURES = (
+    *starting.FIGURES,
+    *stability.FIGURES,
+    *time_domain.FIGURES,
+    *closing_the_loop.FIGURES,
+    *tap_tests.FIGURES,
+)
 
 
 def main() -> None:

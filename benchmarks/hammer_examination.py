@@ -13,6 +13,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter, defaultdict
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,7 +27,16 @@ CONDITIONS = {
 }
 
 
-def study(sets: int, seed: int, condition: dict) -> None:
+class Rates(NamedTuple):
+    """How many records with a fault were found, and how many good ones lost."""
+
+    found: int
+    faulty: int
+    lost: int
+    good: int
+
+
+def study(sets: int, seed: int, condition: dict) -> Rates:
     """Examine random sets and print the rates."""
     injected, named, missed, lost = Counter(), defaultdict(Counter), [], []
     good = wrong_sets = 0
@@ -64,6 +74,7 @@ def study(sets: int, seed: int, condition: dict) -> None:
         print(f"    missed in set {number}: {fault}, {severity}")
     for number, finding in lost:
         print(f"    lost in set {number}: {finding.record}, {finding.fault}: {finding.reason}")
+    return Rates(faulty - len(missed), faulty, len(lost), good)
 
 
 def main() -> None:

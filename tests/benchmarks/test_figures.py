@@ -48,3 +48,17 @@ def test_unknown_figures_are_named():
     assert found.returncode == 2
     assert "nonsense" in found.stderr
     assert "varying speed" in found.stderr
+
+
+def test_records_of_the_hammer_are_counted_wherever_they_were_misjudged(monkeypatch):
+    from benchmarks import hammer_examination
+    from benchmarks.figures import tap_tests
+
+    monkeypatch.setattr(tap_tests, "_SETS", 1)
+    examined = tap_tests.FIGURES[0].measured()
+    assert examined.value == 0.0
+    # where nothing is found, every record with a fault is counted, and no good one
+    monkeypatch.setattr(hammer_examination, "examine_records", lambda records: [])
+    blind = tap_tests.FIGURES[0].measured()
+    assert blind.value > 0.0
+    assert blind.bound.startswith(f"0 of {blind.value:.0f} faults found, 0 of ")
