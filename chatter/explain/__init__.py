@@ -10,7 +10,7 @@ measurement         runs with their signals, and the declared case
 measurement_file    measurement folders
 criteria            every tuned number of the search and the verdict, with its reason
 fitting             least squares with priors, which declared values have
-residuals           where the residual lives
+residuals           residual diagnostics
 data_checks         checks of the signals before anything is blamed on physics
 kinds               milling, axis, stability, frf: predictions, nuisance parameters
 checking            the checks of a kind, and the exclusion of what they find

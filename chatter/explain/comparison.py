@@ -33,7 +33,7 @@ class Comparison(NotebookResult):
     measurement : Measurement
     errors : sequence of ChannelError
     signature : Signature or None
-        Where the residual lives; None where nothing could be predicted.
+        Residual diagnostics; None where nothing could be predicted.
     checks : tuple of SignalFinding
         What is unusable in the signals.
     """

@@ -152,7 +152,7 @@ class Explanation(NotebookResult):
 
     @cached_property
     def repaired_signature(self) -> Signature | None:
-        """Where the residual lives with the effects added, also where they explain a part alone."""
+        """Residual diagnostics with the effects added, also where they explain a part alone."""
         if not self.found.accepted:
             return None
         # samples count as far as the law that was found is certain of them

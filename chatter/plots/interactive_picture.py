@@ -63,8 +63,10 @@ def _panel(axes: Axes, figure: Figure) -> Any:
         if line.get_visible():
             _draw_line(drawn, axes, line)
     _hover(drawn, axes)
-    for legend in drawn.legend:
-        legend.update(click_policy="hide", label_text_font_size="8pt")
+    for legend in list(drawn.legend):
+        legend.update(click_policy="hide", label_text_font_size="8pt", orientation="horizontal")
+        drawn.center.remove(legend)  # it would cover curves
+        drawn.add_layout(legend, "above")
     return drawn
 
 

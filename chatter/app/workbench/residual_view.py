@@ -1,4 +1,4 @@
-"""Where a residual lives: records before and after, their errors, and each diagnostic."""
+"""Residual diagnostics: records before and after, their errors, and each diagnostic."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
 HEADINGS = (
     "Effects added",
     "Error before and after",
-    "Where the residual lives",
+    "Residual diagnostics",
     "Candidates",
     "Values refitted",
 )
