@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from chatter.cutting_coefficients.mean_forces import force_channels
+from chatter.cutting_coefficients.mean_forces import FEWEST_REVOLUTIONS, force_channels
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement, Run
@@ -39,16 +39,13 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     case = run.of(measurement.case)
     forces = np.array([run.signals[name] for name in names])
     where = measurement.folder / run.name
-    for name, values in zip(names, forces, strict=True):
-        blank = int(np.sum(~np.isfinite(values)))
-        if blank:
-            raise InputError(f"{where}: {name}: {blank} samples are blank or no numbers")
-    if not np.any(np.ptp(forces, axis=1) > 0.0):
-        raise InputError(f"{where}: no force varies over the record: {', '.join(names)}")
+    _require_forces(str(where), names, forces)
+    turn = 2.0 * math.pi / case.cut.spindle_speed / run.step
+    if time.size < FEWEST_REVOLUTIONS * turn:  # too short for a mean, where that is told
+        return RunInCut(run, is_zeroed=False)
     stages = stages_of(case, time, forces, AIR)
     if stages.entry == 0 and stages.leave == time.size:
         return RunInCut(run, is_zeroed=False)
-    turn = 2.0 * math.pi / case.cut.spindle_speed / run.step
     air = [
         part
         for part in (slice(0, stages.entry - round(_MARGIN * turn)),
@@ -59,6 +56,16 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     for name in names:
         signals[name] = signals[name] - _offset(run.signals[name], air, turn, time, signals["time"])
     return RunInCut(replace(run, signals=signals), is_zeroed=bool(air))
+
+
+def _require_forces(where: str, names: list[str], forces: Array) -> None:
+    """Raise InputError where a force is blank somewhere, or none varies."""
+    for name, values in zip(names, forces, strict=True):
+        blank = int(np.sum(~np.isfinite(values)))
+        if blank:
+            raise InputError(f"{where}: {name}: {blank} samples are blank or no numbers")
+    if not np.any(np.ptp(forces, axis=1) > 0.0):
+        raise InputError(f"{where}: no force varies over the record: {', '.join(names)}")
 
 
 def _offset(values: Array, air: list[slice], turn: float, time: Array, wanted: Array) -> Array:

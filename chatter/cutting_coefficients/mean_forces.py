@@ -18,7 +18,7 @@ from chatter.explain.records.description import FORCE, Channel
 #: channels that need no description, along x, y and z of the cut, on the tool
 _USUAL = ("Fx", "Fy", "Fz")
 #: revolutions of which a mean has a scatter
-_FEWEST_REVOLUTIONS = 4
+FEWEST_REVOLUTIONS = 4
 #: share of its value by which a force is uncertain at the least: gain and crosstalk of a
 #: dynamometer
 GAIN = 0.01
@@ -60,10 +60,10 @@ def _of_run(measurement: Measurement, run: Run) -> list[MeanForce]:
         raise InputError(f"{where}: no force has a known direction; [channels.NAME] direction says")
     time = run.signals["time"]
     count, revolutions = _whole_revolutions(own, time)
-    if revolutions < _FEWEST_REVOLUTIONS:
+    if revolutions < FEWEST_REVOLUTIONS:
         raise InputError(
             f"{where}: {revolutions} whole revolutions at {own.cut.spindle_speed_rpm:.0f} rpm; at "
-            f"least {_FEWEST_REVOLUTIONS} are required"
+            f"least {FEWEST_REVOLUTIONS} are required"
         )
     return [
         _mean(run, name, sense, has_sign, run.signals[name][:count], revolutions)

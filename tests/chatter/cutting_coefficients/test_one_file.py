@@ -184,3 +184,10 @@ def test_records_that_hold_no_cut_are_refused(tmp_path, case, value, told):
         forces[:] = value
     with pytest.raises(InputError, match=told):
         chatter.coefficients(write(tmp_path / "cut.csv", forces), case)
+
+
+@pytest.mark.parametrize("samples", [3, 20, 300])
+def test_a_record_of_less_than_four_revolutions_is_refused_in_words(tmp_path, case, samples):
+    forces = forces_of(np.full(2000, 0.08))[:samples]
+    with pytest.raises(InputError, match=r"whole revolutions at .* rpm; at least 4 are required"):
+        chatter.coefficients(write(tmp_path / "cut.csv", forces), case)
