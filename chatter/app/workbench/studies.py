@@ -214,6 +214,7 @@ def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:
     if isinstance(drawn, (list, tuple)):
         for number, page in enumerate(drawn[:_MOST_PAGES], start=1):
             page.savefig(folder / f"page-{number}.png")
+            page.savefig(folder / f"page-{number}.svg")
     else:
         drawn.savefig(folder / PICTURE)
     sentences = list(result.sentences()) if hasattr(result, "sentences") else []

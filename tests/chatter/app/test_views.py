@@ -201,6 +201,7 @@ def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
     folder = workbench.session.results("sheet")
     assert (folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
     assert (folder / "sheet.xlsx").is_file()
+    assert "<svg" in (folder / "page-1.svg").read_text()
     assert json.loads((folder / "call.json").read_text())["command"] == "chatter sheet case.toml"
     again = Workbench(tmp_path)
     assert len(again.sheet._result.objects) >= 3
