@@ -167,6 +167,8 @@ def through_resonance(
     # what is there at the first row is held from there on, and did not rise to it before
     first = force[:1]
     rest = lfilter(ramped, denominator, force - first, axis=0)
+    if not np.any(first):
+        return rest
     return rest + first * lfilter(held, denominator, np.ones((len(force), 1)), axis=0)
 
 

@@ -90,13 +90,13 @@ class _Motion:
     def normal(self, frequency: float, damping: float) -> tuple[Array, Array]:
         """Normal matrix (3, 3) and right side (3,) of the products of a mode."""
         q = through_resonance(self.force, frequency, damping, self.step)
-        zero = np.zeros(len(q))
+        (xx, xy), (_, yy) = q.T @ q
         matrix, right = np.zeros((3, 3)), np.zeros(3)
-        columns = ((q[:, 0], q[:, 1], zero), (zero, q[:, 0], q[:, 1]))
-        for residual, level, three in zip(self.residual, self.level, columns, strict=True):
-            scaled = np.column_stack(three) / level
-            matrix += scaled.T @ scaled
-            right += scaled.T @ residual
+        # columns (qx, qy, 0) of x and (0, qx, qy) of y
+        for first, residual, level in zip((0, 1), self.residual, self.level, strict=True):
+            own = slice(first, first + 2)
+            matrix[own, own] += np.array([[xx, xy], [xy, yy]]) / level**2
+            right[own] += q.T @ residual / level
         return matrix, right
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -9,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.explain.criteria import (
+    AT_NOISE,
     EQUAL,
     FINISHED,
     FITTED_IN_FULL,
@@ -20,10 +22,20 @@ from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import Fit, Matrix
 from chatter.explain.measurement import Run
-from chatter.explain.selection.cheaper_runs import screened_candidates
+from chatter.explain.selection.cheaper_runs import (
+    ScreenedCandidate,
+    is_at_noise,
+    least_promise,
+    screened_candidates,
+)
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.joint_steps import JointStep, joint_steps
-from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
+from chatter.explain.selection.linearised_step import (
+    LinearisedStep,
+    linearised,
+    linearised_from,
+    promised_by_secants,
+)
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split
@@ -70,18 +82,8 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     added = {effect.name for effect in problem.effects}
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
     screened, runs = problem.screened(now, split.fitted)
-    steps: list[tuple[Effect, LinearisedStep]] = []
     progress("looking at what may be missing", number / (MOST_EFFECTS + 1))
-    screened_effects = screened_candidates(screened, now, runs, effects)
-    for index, (effect, begins) in enumerate(screened_effects):
-        share = _LINEARISED_SHARE * index / len(screened_effects)
-        progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        step = (
-            linearised(screened, effect, now, runs)
-            if begins is None
-            else linearised_from(screened, effect, now, runs, begins)
-        )
-        steps.append((effect, step))
+    steps = _linearised_steps(screened, now, runs, effects, progress, number)
     chosen = _chosen(problem, steps)
     hopeful = [entry for entry in chosen if _may_be_significant(problem, entry[1], now)]
     # one at the least, so that the report can say how far nothing helps
@@ -96,17 +98,80 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     found = stage_with(problem, now, split, _finished(problem, now, split, tried, most))
     if problem.effects:
         return found
-    fixed, share = problem.kind.least_gain
-    least = PROMISING * (fixed + share * now.residuals.size)
-    return replace(found, together=tuple(joint_steps(now, steps, least)))
+    together = joint_steps(now, steps, least_promise(problem, now))
+    return replace(found, together=tuple(together))
+
+
+def _linearised_steps(
+    problem: Problem,
+    now: Fit,
+    runs: Sequence[Run],
+    effects: Sequence[Effect],
+    progress: Progress,
+    number: int,
+) -> list[tuple[Effect, LinearisedStep]]:
+    """Linearised steps of the effects that may be missing, the most promising first.
+
+    Where the residual is at the noise, of those that promise something; where one takes it there,
+    of its rivals. One at the least, so that the report can say how far nothing helps.
+    """
+    steps: list[tuple[Effect, LinearisedStep]] = []
+    hopes = _hopes(problem, now, screened_candidates(problem, now, runs, effects), runs)
+    least = least_promise(problem, now) if is_at_noise(now) else -math.inf
+    for index, (effect, begins, promised) in enumerate(hopes):
+        if steps and promised < least:
+            break
+        share = _LINEARISED_SHARE * index / len(hopes)
+        progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
+        step = (
+            linearised(problem, effect, now, runs)
+            if begins is None
+            else linearised_from(problem, effect, now, runs, begins)
+        )
+        steps.append((effect, step))
+        reached = _reached(problem, effect, step, now, runs)
+        if reached <= AT_NOISE**2 * now.residuals.size:
+            least = max(least, PROMISING * (now.cost - reached))
+    return steps
+
+
+def _reached(
+    problem: Problem, effect: Effect, step: LinearisedStep, now: Fit, runs: Sequence[Run]
+) -> float:
+    """Sum of squares where a step leads, and a rough fit from there if that is most of the way."""
+    misfit = now.cost - now.residuals.size
+    if now.cost - step.cost < FINISHED * misfit:
+        return step.cost
+    found = problem.with_effect(effect).rough_fit(runs, step.values, step.jacobian)
+    return min(step.cost, found.cost)
+
+
+class _Hope(NamedTuple):
+    """An effect that may be missing, and what it promises."""
+
+    effect: Effect
+    begins: Sequence[Mapping[str, float]] | None  # from its own starts where nothing is known
+    promised: float  # fall of the sum of squares by a line through a start; infinite if not asked
+
+
+def _hopes(
+    problem: Problem, now: Fit, screened: Sequence[ScreenedCandidate], runs: Sequence[Run]
+) -> list[_Hope]:
+    """Effects in the order of what they promise."""
+    hopes = [
+        _Hope(
+            effect, begins, math.inf if begins else promised_by_secants(problem, effect, now, runs)
+        )
+        for effect, begins in screened
+    ]
+    return sorted(hopes, key=lambda hope: -hope.promised)
 
 
 def _finished(
     problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate], most: float
 ) -> list[Candidate]:
     """Candidates that were fitted roughly, in full those whose gain comes near the most."""
-    fixed, share = problem.kind.least_gain
-    least = max(FINISHED * most, PROMISING * (fixed + share * now.residuals.size))
+    least = max(FINISHED * most, least_promise(problem, now))
     return [
         fitted(problem, one.effect, split, one.fit.by_name)
         if now.cost - one.fit.cost >= least
@@ -167,9 +232,7 @@ def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candida
 
 def _may_be_significant(problem: Problem, step: LinearisedStep, now: Fit) -> bool:
     """Whether a full fit may yet make significant what linearised steps promise or gain."""
-    fixed, share = problem.kind.least_gain
-    gain = max(step.promised, now.cost - step.cost)
-    return gain >= PROMISING * (fixed + share * now.residuals.size)
+    return max(step.promised, now.cost - step.cost) >= least_promise(problem, now)
 
 
 def _chosen(
@@ -192,10 +255,16 @@ def _chosen(
     return chosen
 
 
-def fitted(problem: Problem, effect: Effect, split: Split, start: Mapping[str, float]) -> Candidate:
-    """Fit a problem with an effect added."""
+def fitted(
+    problem: Problem,
+    effect: Effect,
+    split: Split,
+    start: Mapping[str, float],
+    jacobian: Matrix | None = None,
+) -> Candidate:
+    """Fit a problem with an effect added; with the Jacobian at the start where it is known."""
     trial = problem.with_effect(effect)
-    return _candidate(trial, trial.fit(split.fitted, start), split)
+    return _candidate(trial, trial.fit(split.fitted, start, jacobian), split)
 
 
 def _candidate(trial: Problem, found: Fit, split: Split) -> Candidate:

@@ -17,6 +17,7 @@ from chatter.explain.criteria import (
     AT_NOISE,
     CERTAIN_EVIDENCE,
     FITTED_IN_FULL,
+    LEAST_SHARE,
     NEAR_NOISE,
     PROMISING,
 )
@@ -80,7 +81,7 @@ def _may_be_missing(problem: Problem, effect: Effect, now: Fit, runs: Sequence[R
     Where these are at their noise it is small, if it is there. One that the residual proposes does
     not grow from nothing in a straight line.
     """
-    if now.cost > AT_NOISE**2 * now.residuals.size:
+    if not is_at_noise(now):
         return True
     if type(effect).proposed is not Effect.proposed:
         return True
@@ -97,13 +98,22 @@ def _promises(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -
     if not nothing:
         return True
     promised = promise_from(problem, effect, now, runs, _beginning(problem, effect, nothing))
-    return promised >= _least_promise(problem, now)
+    return promised >= least_promise(problem, now)
 
 
-def _least_promise(problem: Problem, now: Fit) -> float:
-    """Fall of the sum of squares that must be promised for a closer look."""
+def is_at_noise(now: Fit) -> bool:
+    """Whether the residual of a fit is no more than noise."""
+    return now.cost <= AT_NOISE**2 * now.residuals.size
+
+
+def least_promise(problem: Problem, now: Fit) -> float:
+    """Fall of the sum of squares that must be promised for a closer look.
+
+    A share of what is significant, beside what the fit leaves above the noise.
+    """
     fixed, share = problem.kind.least_gain
-    return PROMISING * (fixed + share * now.residuals.size)
+    misfit = now.cost - now.residuals.size
+    return PROMISING * max(fixed + share * now.residuals.size, LEAST_SHARE * misfit)
 
 
 def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run]) -> Fit:
@@ -120,7 +130,7 @@ def _asked_for(
 ) -> list[ScreenedCandidate]:
     """Candidates that may take a significant part of the residual away, the best first."""
     steps = [(one, linearised(problem, one, part, cheap)) for one in effects]
-    least = _least_promise(problem, part)
+    least = least_promise(problem, part)
     gaining = [
         (effect, step)
         for effect, step in steps

@@ -85,26 +85,66 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
 
     The nuisance parameters move along by the Jacobian that is known of them.
     """
+    begins = _Begins.of(problem, effect, now, runs)
+    secants = _secants_of(problem, effect, now, runs)
+    chosen = secants.best(begins.own, SCREENED_STARTS)
+    chosen += secants.best(begins.sizable, _SIZABLE_STARTS)
+    chosen += begins.proposed
     trial = problem.with_effect(effect)
-    parameters = trial.parameters()
-    added = parameters[len(now.parameters) :]
+    added = trial.parameters()[len(now.parameters) :]
+    return _best_of(trial, added, now, runs, chosen or [begins.declared])
 
-    def values_at(start: Values) -> dict[str, float]:
-        own = {f"{effect.name}.{key}": value for key, value in start.items()}
-        return {one.name: one.start for one in parameters} | now.by_name | own
 
-    measured = problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds)
-    predicted = problem.predicted(now.by_name, runs)
-    own = problem.measured_by(effect)
-    amounts = [one for one in added if one.name.partition(".")[2] in effect.nothing(measured)]
-    secants = _Secants(trial, now, runs, amounts)
-    begins = secants.best([values_at(start) for start in effect.starts(own)], SCREENED_STARTS)
-    if any(abs(pull) > _DRAWN for pull in problem.declared_pulls(now).values()):
-        declared = {one.name: one.start for one in now.parameters if one.prior}
-        sizable = [values_at(start) | declared for start in effect.sizable_starts(own)]
-        begins += secants.best(sizable, _SIZABLE_STARTS)
-    begins += [values_at(start) for start in effect.proposed(measured, predicted)]
-    return _best_of(trial, added, now, runs, begins or [values_at({})])
+def promised_by_secants(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> float:
+    """Fall of the sum of squares on the best line from no effect through one of its starts.
+
+    One prediction a run for each start. Where the residual is at the noise an effect is small, so
+    that what it does grows along such a line.
+    """
+    begins = _Begins.of(problem, effect, now, runs)
+    every = [*begins.own, *begins.sizable, *begins.proposed] or [begins.declared]
+    return now.cost - min(_secants_of(problem, effect, now, runs).costs(every))
+
+
+class _Begins(NamedTuple):
+    """Values of all parameters, by name, from which an effect is looked for."""
+
+    declared: dict[str, float]  # the effect where its parameters begin
+    own: list[dict[str, float]]  # its starts
+    sizable: list[dict[str, float]]  # with declared values put back, where they were drawn far
+    proposed: list[dict[str, float]]  # by the residual
+
+    @classmethod
+    def of(cls, problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> _Begins:
+        """Beside a fit to some runs."""
+        parameters = problem.with_effect(effect).parameters()
+        measured = problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds)
+        own = problem.measured_by(effect)
+
+        def values_at(start: Values) -> dict[str, float]:
+            moved = {f"{effect.name}.{key}": value for key, value in start.items()}
+            return {one.name: one.start for one in parameters} | now.by_name | moved
+
+        sizable = []
+        if any(abs(pull) > _DRAWN for pull in problem.declared_pulls(now).values()):
+            declared = {one.name: one.start for one in now.parameters if one.prior}
+            sizable = [values_at(start) | declared for start in effect.sizable_starts(own)]
+        predicted = problem.predicted(now.by_name, runs)
+        return cls(
+            values_at({}),
+            [values_at(start) for start in effect.starts(own)],
+            sizable,
+            [values_at(start) for start in effect.proposed(measured, predicted)],
+        )
+
+
+def _secants_of(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> _Secants:
+    """Lines from no effect, beside a fit to some runs."""
+    trial = problem.with_effect(effect)
+    nothing = effect.nothing(problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds))
+    added = trial.parameters()[len(now.parameters) :]
+    amounts = [one for one in added if one.name.partition(".")[2] in nothing]
+    return _Secants(trial, now, runs, amounts)
 
 
 class _Secants:
@@ -125,10 +165,14 @@ class _Secants:
         """Starts on whose lines the sum of squares falls most, all where there are few."""
         if len(begins) <= most:
             return begins
-        with ThreadPoolExecutor(WORKERS) as pool:
-            costs = list(pool.map(self.cost, begins))
+        costs = self.costs(begins)
         ranked = sorted(range(len(begins)), key=lambda index: costs[index])
         return [begins[index] for index in ranked[:most]]
+
+    def costs(self, begins: Sequence[Mapping[str, float]]) -> list[float]:
+        """Least sums of squares on the lines through some starts."""
+        with ThreadPoolExecutor(WORKERS) as pool:
+            return list(pool.map(self.cost, begins))
 
     def cost(self, values: Mapping[str, float]) -> float:
         """Least sum of squares on the line through a start.

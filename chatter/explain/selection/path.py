@@ -29,7 +29,7 @@ from chatter.explain.selection.candidates import (
     stage_of,
     stage_with,
 )
-from chatter.explain.selection.cheaper_runs import screened_candidates
+from chatter.explain.selection.cheaper_runs import least_promise, screened_candidates
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.linearised_step import LinearisedStep, linearised, linearised_from
 from chatter.explain.selection.other_starts import fit_from_elsewhere
@@ -143,7 +143,10 @@ def _pair(
 ) -> list[Path]:
     """Path of two effects fitted jointly; none where one of them gains nothing beside the other."""
     alone = begin.problem.with_effect(one.effect)
-    joint = fitted(alone, other, split, values)
+    rough = alone.with_effect(other).rough_fit(split.fitted, values)
+    if one.fit.cost - rough.cost < least_promise(alone, one.fit):
+        return []
+    joint = fitted(alone, other, split, rough.by_name, rough.jacobian)
     start = stage_with(begin.problem, begin.now, split, [one])
     added = Stage(one.fit, one.holdout, one.evidence, (joint,))
     # the first of them may gain nothing alone

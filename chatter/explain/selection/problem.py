@@ -158,7 +158,10 @@ class Problem:
         return self._fit_by(fit, runs, start, jacobian)
 
     def rough_fit(
-        self, runs: Sequence[Run], start: Mapping[str, float], jacobian: NDArray[np.float64]
+        self,
+        runs: Sequence[Run],
+        start: Mapping[str, float],
+        jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs near enough to rank candidates by."""
         return self._fit_by(rough_fit, runs, start, jacobian)

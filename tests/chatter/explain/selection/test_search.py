@@ -17,7 +17,7 @@ from chatter.explain.selection import candidates
 from chatter.explain.selection.candidates import fitted, stage_with
 from chatter.explain.selection.established import gain_in_most, stages_of_kept_effects
 from chatter.explain.selection.joint_steps import joint_steps
-from chatter.explain.selection.linearised_step import linearised
+from chatter.explain.selection.linearised_step import linearised, promised_by_secants
 from chatter.explain.selection.path import Path
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.search import search
@@ -235,6 +235,43 @@ def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
     step = linearised(problem, Chosen(), now, split.fitted)
     assert step.values["chosen.which"] == pytest.approx(7.0, abs=0.1)
     assert step.values["chosen.amount"] == pytest.approx(3.0, abs=0.05)
+
+
+def test_a_line_through_a_start_promises_what_the_effect_takes_away():
+    """Three of a shape of one, in units of the noise, whichever start it is."""
+    problem, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0)))
+    now = problem.fit(split.fitted, {})
+    count = len(split.fitted) * SAMPLES
+    promised = promised_by_secants(problem, Chosen(), now, split.fitted)
+    assert promised == pytest.approx(9.0 * count, rel=0.03)
+    assert promised_by_secants(problem, Asymmetry(), now, split.fitted) < 0.01 * count
+
+
+@pytest.mark.parametrize(
+    ("values", "looked_at"),
+    [
+        # at the noise: one, so that the report can say how far nothing helps
+        ((0.0, 0.0, 0.0), 1),
+        # one takes all of the misfit away: none of the others can
+        ((0.0, 3.0, 0.0), 1),
+        # neither of two does
+        ((2.0, 3.0, 0.0), 3),
+    ],
+)
+def test_effects_are_looked_at_as_far_as_they_promise_something(monkeypatch, values, looked_at):
+    asked = []
+
+    def recorded(problem, effect, now, runs):
+        asked.append(effect.name)
+        return linearised(problem, effect, now, runs)
+
+    monkeypatch.setattr(candidates, "linearised", recorded)
+    problem, split = problem_of(measured(unlike_shapes, values))
+    now = problem.fit(split.fitted, {})
+    found = candidates.stage_of(problem, now, split, lambda *_: None, 0)
+    assert len(asked) == looked_at
+    if any(values):
+        assert asked[0] == found.best.effect.name == "offset"
 
 
 class BesideADeclaredMass(Sums):
