@@ -2,13 +2,17 @@
 
 import os
 
+import pytest
 from hypothesis import settings
+
+from tests.nightly_tests import nightly_tests
 
 # matrices in the tests are small: threads of BLAS cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# a gate repeats itself: it draws the same cases every time, and the nightly run draws new ones
-settings.register_profile("gate", derandomize="CHATTER_PROPERTIES" not in os.environ)
+# a gate repeats itself: it draws the same cases every time, the nightly run draws new ones; on a
+# machine that is busy a case may take any time
+settings.register_profile("gate", derandomize="CHATTER_PROPERTIES" not in os.environ, deadline=None)
 settings.load_profile("gate")
 
 
@@ -20,8 +24,15 @@ def pytest_configure(config):
         compile_once()
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark nightly tests in a report, from which the record of a nightly run is made."""
+    """Mark the slow tests of the list, and nightly tests in a report, which makes their record.
+
+    First, as the marks choose what is run.
+    """
+    slow = nightly_tests()
     for item in items:
+        if item.nodeid in slow:
+            item.add_marker("nightly")
         if item.get_closest_marker("nightly"):
             item.user_properties.append(("nightly", True))

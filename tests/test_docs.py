@@ -53,7 +53,7 @@ def places_named(page):
 def test_modules_that_pages_name_are_there(path):
     for one in places_named(path.read_text(encoding="utf-8")):
         place = ROOT / one
-        assert any(place.with_suffix(end).exists() for end in ("", ".py", ".md")), one
+        assert any(place.with_suffix(end).exists() for end in ("", ".py", ".md", ".txt")), one
 
 
 PACKAGES = [
