@@ -124,7 +124,8 @@ def notes_on_band(fit: ModalFit, side: Side) -> tuple[str, ...]:
         notes.append(
             f"{mode.band} {ends}, a mode at {mode.frequency:.4g} Hz with damping "
             f"{mode.damping:.2g} along [{along}] stands for the fitted residual: static compliance "
-            f"{compliance:.3g} m/N, {compliance / inside:.2g} of that of the modes in the band"
+            f"{1e6 * compliance:.3g} um/N, {compliance / inside:.2g} of that of the modes in the "
+            "band"
         )
     if fit.beyond.misfit > _NOTED_MISFIT:
         notes.append(

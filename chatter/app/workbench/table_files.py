@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from chatter.description.errors import InputError
 from chatter.io.result_files import csv_of_rows
+from chatter.studies.frf_units import frf_unit
 
 _SHOWN_ROWS = 60
 
@@ -23,10 +24,30 @@ class PageTable(NamedTuple):
 
 
 def table_of(path: Path) -> PageTable:
-    """Read a table that a result has written."""
+    """Read a table that a result has written; FRFs in the units in which people read them."""
     with path.open(encoding="utf-8", newline="") as lines:
         headings, *rows = list(csv.reader(lines)) or [[]]
-    return PageTable(headings, [[_number(cell) for cell in row] for row in rows])
+    read = [_heading_read(one) for one in headings]
+    factors = [factor for _, factor in read]
+    return PageTable(
+        [heading for heading, _ in read],
+        [
+            [
+                factor * value if isinstance(value, float) else value
+                for value, factor in zip(map(_number, row), factors, strict=False)
+            ]
+            for row in rows
+        ],
+    )
+
+
+def _heading_read(heading: str) -> tuple[str, float]:
+    """Heading "name [unit]" with the unit in which it is read, and the number of it in its own."""
+    name, bracket, unit = heading.partition(" [")
+    if not bracket or not unit.endswith("]"):
+        return heading, 1.0
+    shown, factor = frf_unit(unit[:-1])
+    return f"{name} [{shown}]", factor
 
 
 def as_csv(table: PageTable) -> io.StringIO:

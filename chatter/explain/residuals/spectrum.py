@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -319,11 +320,8 @@ class Harmonics:
         highest = int(2.0 * math.pi / (a_sample * _SAMPLES_A_CYCLE))
         count = max(1, min(highest, self.samples // (2 * _SAMPLES_A_HARMONIC)))
         self.orders = np.arange(1, count + 1)
-        columns = [np.ones((self.samples, 1))]
-        phase = np.outer(angle, self.orders)
-        pairs = np.stack((np.cos(phase), np.sin(phase)), axis=2).reshape(self.samples, -1)
-        self.columns = np.hstack([*columns, pairs])
-        gram = self.columns.T @ self.columns
+        self.turns = _powers(np.exp(1j * angle), count)
+        gram = _gram(self.turns)
         # of less than a revolution harmonics are collinear
         gram[np.diag_indices_from(gram)] += _RIDGE * self.samples
         self.factor = np.linalg.cholesky(gram)
@@ -333,9 +331,12 @@ class Harmonics:
     def split(self, residual: ChannelResidual) -> Split:
         """Split one channel of the run."""
         values = residual.normalised[: self.samples]
-        parts = scipy.linalg.solve_triangular(self.factor, self.columns.T @ values, lower=True)
+        sums = self.turns @ values
+        right = np.concatenate([[values.sum()], np.column_stack([sums.real, sums.imag]).ravel()])
+        parts = scipy.linalg.solve_triangular(self.factor, right, lower=True)
         amplitudes = scipy.linalg.solve_triangular(self.factor, parts, lower=True, trans="T")
-        between = values - self.columns @ amplitudes
+        between = values - amplitudes[0]
+        between -= ((amplitudes[1::2] - 1j * amplitudes[2::2]) @ self.turns).real
         density = self._density(between)
         return Split(
             self.orders,
@@ -350,6 +351,39 @@ class Harmonics:
     def _density(self, values: Array) -> Array:
         lines = np.abs(np.fft.rfft(values * self.window)) ** 2
         return lines / np.sum(self.window**2)
+
+
+def _powers(turn: NDArray[np.complex128], count: int) -> NDArray[np.complex128]:
+    """Powers (m, n) of turns exp(i angle), the first to the m-th."""
+    powers = np.empty((count, turn.size), dtype=np.complex128)
+    powers[0] = turn
+    for before, power in itertools.pairwise(powers):
+        np.multiply(before, turn, out=power)
+    return powers
+
+
+def _gram(turns: NDArray[np.complex128]) -> Array:
+    """Products (2 m + 1, 2 m + 1) of 1, cos, sin, cos, ... of m multiples of an angle, summed.
+
+    Of powers (m, n) of its turn, exp(i k angle): products are sums over sums and differences of the
+    orders, so that 2 m + 1 sums make all of them.
+    """
+    count, samples = turns.shape
+    # sums of exp(i k angle) for k = 0 ... 2 m
+    sums = np.concatenate([[samples], turns.sum(axis=1), turns @ turns[-1]])
+    orders = np.arange(1, count + 1)
+    above = sums[orders[:, None] + orders]
+    apart = orders[:, None] - orders
+    below = np.where(apart < 0, sums[np.abs(apart)].conj(), sums[np.abs(apart)])
+    gram = np.empty((2 * count + 1, 2 * count + 1))
+    gram[0, 0] = samples
+    gram[0, 1::2] = gram[1::2, 0] = sums[1 : count + 1].real
+    gram[0, 2::2] = gram[2::2, 0] = sums[1 : count + 1].imag
+    gram[1::2, 1::2] = 0.5 * (below + above).real
+    gram[2::2, 2::2] = 0.5 * (below - above).real
+    gram[1::2, 2::2] = 0.5 * (above - below).imag
+    gram[2::2, 1::2] = gram[1::2, 2::2].T
+    return gram
 
 
 def _level_beside(density: Array) -> Array:

@@ -15,7 +15,7 @@ from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.picture_files import picture_file
 from chatter.app.workbench.separate_process import in_own_process
 from chatter.app.workbench.session import LARGEST_FILE, Session
-from chatter.app.workbench.table_files import PageTable, as_xlsx
+from chatter.app.workbench.table_files import PageTable, as_xlsx, table_of
 from chatter.app.workbench.upload import dropper
 from chatter.description.errors import InputError, RunError
 from tests.chatter.app.crash import ends_at_once
@@ -307,3 +307,12 @@ def test_an_ended_session_leaves_no_thread():
     computations.end()
     computations._thread.join(10.0)
     assert not computations._thread.is_alive()
+
+
+def test_frfs_of_a_table_are_in_the_units_in_which_people_read_them(tmp_path):
+    file = tmp_path / "frf.csv"
+    file.write_text("frequency [Hz],real [m/N],imag [m/s/N],run\n100,5e-08,-2e-06,1\n")
+    assert table_of(file) == PageTable(
+        ["frequency [Hz]", "real [um/N]", "imag [mm/s/N]", "run"],
+        [[100.0, pytest.approx(0.05), pytest.approx(-0.002), 1.0]],
+    )
