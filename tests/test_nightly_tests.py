@@ -19,7 +19,7 @@ def test_durations_are_read_as_pytest_prints_them():
     }
 
 
-def test_the_quickest_case_of_a_test_stays_and_one_test_of_a_module():
+def test_the_quickest_case_stays_one_test_of_a_module_and_those_of_the_physics_without_cases():
     slow = 2.0 * SLOW_TEST
     seconds = {
         "tests/a.py::test_cases[1]": slow,
@@ -29,12 +29,16 @@ def test_the_quickest_case_of_a_test_stays_and_one_test_of_a_module():
         "tests/b.py::test_alone": slow,
         "tests/b.py::test_slower": 2.0 * slow,
         "tests/c.py::test_quick": 0.9 * SLOW_TEST,
+        "tests/cutting/test_d.py::test_alone": 3.0 * slow,
+        "tests/cutting/test_d.py::test_cases[1]": slow,
+        "tests/cutting/test_d.py::test_cases[2]": 0.5 * slow,
     }
     assert chosen([*seconds, "tests/c.py::test_not_timed"], seconds) == [
         "tests/a.py::test_alone",
         "tests/a.py::test_cases[1]",
         "tests/a.py::test_cases[2]",
         "tests/b.py::test_slower",
+        "tests/cutting/test_d.py::test_cases[1]",
     ]
 
 
