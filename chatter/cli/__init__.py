@@ -1,5 +1,7 @@
 """The command line: a command is a function of its name in a module of its name, and a line here.
 
+Hyphens of a name are underscores in Python.
+
 ================= ============================================================================
 module            responsibility
 ================= ============================================================================
@@ -63,6 +65,7 @@ COMMANDS = (
     "detect",
     "frf",
     "move",
+    "mode-shapes",
     "export",
     "assemble",
     "sheet",

@@ -15,11 +15,17 @@ from typer.core import TyperGroup
 from chatter.cli.command_line import TYPED
 
 
+def python_name(name: str) -> str:
+    """Name of the module and of the function of a command."""
+    return name.replace("-", "_")
+
+
 def in_a_line(name: str) -> str:
     """First line of the docstring of a command, read without importing it."""
-    tree = ast.parse(Path(find_spec(f"chatter.cli.{name}").origin).read_text(encoding="utf-8"))
+    module = find_spec(f"chatter.cli.{python_name(name)}")
+    tree = ast.parse(Path(module.origin).read_text(encoding="utf-8"))
     functions = (node for node in tree.body if isinstance(node, ast.FunctionDef))
-    command = next(node for node in functions if node.name == name)
+    command = next(node for node in functions if node.name == python_name(name))
     return (ast.get_docstring(command) or "").splitlines()[0]
 
 
@@ -61,7 +67,8 @@ def _imported(name: str) -> Any:
     from chatter.cli.report import with_report
 
     alone = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    command = with_report(getattr(import_module(f"chatter.cli.{name}"), name))
+    module = import_module(f"chatter.cli.{python_name(name)}")
+    command = with_report(name, getattr(module, python_name(name)))
     alone.command(name)(reports_errors(command))
     return typer.main.get_command(alone)
 

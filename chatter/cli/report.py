@@ -32,8 +32,8 @@ ReportFile = Annotated[
 ]
 
 
-def with_report(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the option `--report`."""
+def with_report(name: str, command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command of a name the option `--report`."""
 
     @functools.wraps(command)
     def reported(*, report: Path | None = None, **given: Any) -> None:
@@ -42,7 +42,7 @@ def with_report(command: Callable[..., None]) -> Callable[..., None]:
             return
         if report.suffix.lower() not in _KINDS:
             raise InputError(f"--report: {report} must end in {' or '.join(_KINDS)}")
-        document = _begun(command.__name__)
+        document = _begun(name)
         with recording(document):
             try:
                 command(**given)
@@ -55,8 +55,8 @@ def with_report(command: Callable[..., None]) -> Callable[..., None]:
     signature = inspect.signature(command)
     hints = get_type_hints(command, include_extras=True)
     parameters = [
-        parameter.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)
-        for name, parameter in signature.parameters.items()
+        parameter.replace(annotation=hints[key], kind=inspect.Parameter.KEYWORD_ONLY)
+        for key, parameter in signature.parameters.items()
     ]
     option = inspect.Parameter(
         "report", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=ReportFile

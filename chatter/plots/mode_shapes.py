@@ -43,4 +43,6 @@ def plot_mode_shapes(found: ModeShapes) -> Figure:
         axes.set_aspect("equal", "datalim")
         axes.set_xlabel("[mm]")
         style.finish(axes)
+    of_all = f"first {shown} of {len(found.frequency)} mode shapes"
+    figure.suptitle(f"{found.machine}: {of_all}, enlarged; grey: at rest", fontsize=12)
     return figure

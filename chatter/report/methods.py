@@ -104,6 +104,11 @@ METHODS = {
         "The machine with structure, friction, backlash, drives and sampled control is run in "
         "time; contour error is the distance to the path.",
     ),
+    "mode-shapes": Method(
+        "At which frequencies does the machine vibrate, and how does it move?",
+        "Eigenvalues and eigenvectors of the mass and stiffness matrices, without damping, "
+        "friction and control (Ewins, Modal Testing, 2000).",
+    ),
     "export": Method(
         "The machine as a state space.",
         "Modes of the structure with drives, first order, inputs and outputs at named points.",

@@ -119,7 +119,10 @@ class MachineView:
         file = self.file.value
         loaded = f"chatter.load_machine({file!r})"
         if name == "mode_shapes":
-            return {"command": "", "python": f"chatter.mode_shapes({loaded})"}
+            return {
+                "command": shlex.join(["chatter", "mode-shapes", file]),
+                "python": f"chatter.mode_shapes({loaded})",
+            }
         words = ["chatter", name, file, *(part for one in tests for part in ("--only", one))]
         given = repr(tests[0]) if name == "move" else repr(tests) if tests else ""
         return {

@@ -73,7 +73,11 @@ def test_mode_shapes_swing(workbench):
     assert np.allclose(view.moved.data["xs"], view.rest.data["xs"])
     view.player.value = 6  # a quarter of the period
     assert not np.allclose(view.moved.data["xs"], view.rest.data["xs"])
-    assert "chatter.mode_shapes" in view.call.objects[0].object
+    told = view.call.objects[0].object
+    assert told.splitlines() == [
+        "chatter mode-shapes machine.toml",
+        "chatter.mode_shapes(chatter.load_machine('machine.toml'))",
+    ]
 
 
 def test_a_machine_without_a_move_says_so(workbench):

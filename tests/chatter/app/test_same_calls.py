@@ -23,6 +23,9 @@ from tests.chatter.studies.test_modal_test import write_set
 from tests.command_line import chatter_command
 from tests.places import EXAMPLES
 
+#: commands that take seconds
+QUICK = ("modes", "lobes", "simulate", "whatif", "move", "mode-shapes")
+
 
 @pytest.fixture
 def workbench(tmp_path):
@@ -72,7 +75,7 @@ def shown_pairs(workbench):
     lines = [line for line in told.splitlines() if line.startswith("chatter")]
     pairs = {shlex.split(one)[1]: (one, other) for one, other in pairwise(lines)
              if one.startswith("chatter ") and other.startswith("chatter.")}  # fmt: skip
-    return {name: pairs[name] for name in ("modes", "lobes", "simulate", "whatif", "move")}
+    return {name: pairs[name] for name in QUICK}
 
 
 def numbers_of(told):

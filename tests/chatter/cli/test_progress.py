@@ -7,6 +7,7 @@ import time
 import pytest
 
 from chatter.cli import COMMANDS, progress
+from chatter.cli.imported_commands import python_name
 from chatter.cli.progress import RunningWork, elapsed_in_words, in_words, progress_bar, running
 from chatter.description.progress import begin
 from tests.places import ROOT
@@ -284,7 +285,8 @@ def test_an_error_ends_the_lines():
 
 @pytest.mark.parametrize("command", sorted(set(COMMANDS) - AT_ONCE))
 def test_every_command_that_computes_shows_its_progress(command):
-    tree = ast.parse((ROOT / "chatter" / "cli" / f"{command}.py").read_text(encoding="utf-8"))
+    path = ROOT / "chatter" / "cli" / f"{python_name(command)}.py"
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     used = [node for node in ast.walk(tree) if isinstance(node, ast.With)]
     shown = [ast.unparse(node.items[0]) for node in used]
     # `running` where nothing is compiled; `shown` is one of the two

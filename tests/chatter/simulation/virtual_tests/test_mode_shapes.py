@@ -1,5 +1,6 @@
 """Mode shapes of a block on springs, whose frequencies and shapes are known."""
 
+import json
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import chatter
 from chatter.description.machine.machine_file import MachineFile
+from tests.command_line import chatter_command
 
 BLOCK = """
 title = "block on springs"
@@ -62,3 +64,20 @@ def test_files(shapes, tmp_path):
     with np.load(tmp_path / "mode-shapes.npz", allow_pickle=False) as arrays:
         assert arrays["frequency"] == pytest.approx(shapes.frequency)
     assert (tmp_path / "mode-shapes.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_gives_the_frequencies_and_writes_the_shapes(tmp_path):
+    path = tmp_path / "block.toml"
+    path.write_text(BLOCK)
+    words = chatter_command(
+        "mode-shapes", path, "--out", tmp_path, "--set", "body.block.mass=400 kg"
+    )
+    assert words.exit_code == 0, words.output
+    along_x = math.sqrt(1e7 / 400.0) / (2.0 * math.pi)
+    assert f"{along_x:.2f}" in words.stdout
+    assert (tmp_path / "mode-shapes.png").is_file()
+    told = chatter_command("mode-shapes", path, "--out", tmp_path, "--count", 1, "--json")
+    (lowest,) = json.loads(told.stdout)["frequencies_Hz"]
+    assert lowest == pytest.approx(math.sqrt(1e7 / 100.0) / (2.0 * math.pi), rel=1e-6)
+    with np.load(tmp_path / "mode-shapes.npz", allow_pickle=False) as arrays:
+        assert arrays["shapes"].shape == (1, 8, 3)
