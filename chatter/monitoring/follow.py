@@ -1,4 +1,4 @@
-"""A recording that is still being written: its verdict every revolution, as it grows."""
+"""A recording that is still being written: a verdict every revolution, as it grows."""
 
 from __future__ import annotations
 
@@ -30,8 +30,9 @@ def follow(
 ) -> Iterator[Observation]:
     """Observe chatter in a file that is being written, once a revolution.
 
-    Each verdict is of the last 24 revolutions. A sample is part of one as soon as the revolution
-    ends in which it was written.
+    Above 3000 rpm it is once in 20 ms. Each verdict is of the last 24 revolutions, a quarter of a
+    second at the least. A sample is part of one as soon as the revolution, or the 20 ms, ends in
+    which it was written.
 
     Parameters
     ----------
@@ -66,7 +67,8 @@ def follow(
     while clock() - grown < patience:
         samples = file.new_samples()
         if len(samples):
-            grown = clock()
             yield from running.take(samples)
+            # after the verdicts: what they take is no time without growth
+            grown = clock()
         else:
             time.sleep(_EVERY)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 Array = NDArray[np.float64]
 
@@ -95,6 +96,7 @@ def _family(line: float, comb: Comb) -> Array:
 
 def _sidebands(above: Array, frequency: Array, line: float, comb: Comb) -> float:
     """Significance of the sidebands of a line, one revolution or one tooth apart."""
+    near = _Near(above, frequency, comb)
     orders = np.concatenate([np.arange(-_SIDEBANDS, 0), np.arange(1, _SIDEBANDS + 1)])
     offsets = comb.revolution * (np.arange(_OFFSETS) + 0.5) / _OFFSETS
     offsets = offsets[comb.off(line + offsets) & _between(offsets, comb)]
@@ -102,7 +104,7 @@ def _sidebands(above: Array, frequency: Array, line: float, comb: Comb) -> float
     def of(*spacings: float) -> float:
         at = np.abs(np.concatenate([line + spacing * orders for spacing in spacings]))
         at = at[(at > comb.half_width) & (at < frequency[-1] - 2.0 * comb.revolution)]
-        return _significance(above, frequency, at[comb.off(at)], offsets, comb)
+        return _significance(near, at[comb.off(at)], offsets)
 
     if comb.tooth > comb.revolution:
         both = max(of(comb.tooth), of(comb.revolution), of(comb.tooth, comb.revolution))
@@ -116,31 +118,37 @@ def _between(offsets: Array, comb: Comb) -> NDArray[np.bool_]:
     return np.minimum(offsets, comb.revolution - offsets) > 1.25 * comb.half_width
 
 
-def _significance(above: Array, frequency: Array, at: Array, offsets: Array, comb: Comb) -> float:
+class _Near:
+    """Logarithm above the floor of the largest bin near a frequency."""
+
+    def __init__(self, above: Array, frequency: Array, comb: Comb) -> None:
+        self._step = float(frequency[1] - frequency[0])
+        self._reach = max(round(0.5 * comb.half_width / self._step), 1)
+        self._largest = maximum_filter1d(above, 2 * self._reach + 1)
+
+    def at(self, frequencies: Array) -> Array:
+        """Values of the same shape."""
+        index = np.round(frequencies / self._step).astype(np.intp)
+        return self._largest[
+            np.clip(index, self._reach, self._largest.size - 1 - self._reach, out=index)
+        ]
+
+
+def _significance(near: _Near, at: Array, offsets: Array) -> float:
     """Standard deviations by which more positions stand out than chance makes.
 
     A position stands out that exceeds 95 % of the same position shifted by each offset.
     """
     if at.size < _FEWEST_POSITIONS or offsets.size < _FEWEST_OFFSETS:
         return 0.0
-    standing = _standing(above, frequency, at, offsets, comb)
     expected = _CHANCE * at.size
-    return float((standing - expected) / np.sqrt(expected * (1.0 - _CHANCE)))
+    return float((_standing(near, at, offsets) - expected) / np.sqrt(expected * (1.0 - _CHANCE)))
 
 
-def _standing(above: Array, frequency: Array, at: Array, offsets: Array, comb: Comb) -> int:
+def _standing(near: _Near, at: Array, offsets: Array) -> int:
     """Number of positions that exceed 95 % of the same position shifted by each offset."""
-    step = float(frequency[1] - frequency[0])
-    reach = max(round(0.5 * comb.half_width / step), 1)
-    own = _strengths(above, at, step, reach)
-    others = np.array([_strengths(above, at + offset, step, reach) for offset in offsets])
-    return int(np.sum(own > np.quantile(others, 1.0 - _CHANCE, axis=0)))
-
-
-def _strengths(above: Array, at: Array, step: float, reach: int) -> Array:
-    """Logarithm above the floor of the largest bin near each position."""
-    index = np.clip(np.round(at / step).astype(np.intp), reach, above.size - 1 - reach)
-    return above[index[:, None] + np.arange(-reach, reach + 1)].max(axis=1)
+    others = np.quantile(near.at(at + offsets[:, None]), 1.0 - _CHANCE, axis=0)
+    return int(np.sum(near.at(at) > others))
 
 
 #: harmonics of the teeth that tell a cut
@@ -158,7 +166,7 @@ def harmonics_significance(
     if without_multiples_of > 0:
         orders = orders[orders % without_multiples_of > 0]
     at, offsets = _harmonics(frequency, comb, orders)
-    return _significance(above, frequency, at, offsets, comb)
+    return _significance(_Near(above, frequency, comb), at, offsets)
 
 
 def share_of_harmonics(
@@ -168,7 +176,7 @@ def share_of_harmonics(
     at, offsets = _harmonics(frequency, comb, np.arange(1, count + 1))
     if at.size < _FEWEST_POSITIONS or offsets.size < _FEWEST_OFFSETS:
         return 0.0
-    return _standing(above, frequency, at, offsets, comb) / at.size
+    return _standing(_Near(above, frequency, comb), at, offsets) / at.size
 
 
 def _harmonics(frequency: Array, comb: Comb, orders: Array) -> tuple[Array, Array]:

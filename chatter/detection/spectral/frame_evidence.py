@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,6 @@ from chatter.detection.spectral.revolution_frequency import (
     about_given,
     from_spectrum,
     from_tacho,
-    mean_about_given,
     over_frames,
     stated_alone,
 )
@@ -250,24 +248,6 @@ def _with_speed(
     frames, long = _frames(recording, spacing, _REVOLUTIONS), _frames(recording, spacing, _LONG)
     revolution = about_given(long, frames, spacing, teeth or 1)
     return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
-
-
-class SpeedOfLines(NamedTuple):
-    """What the lines of a recording say of the stated speed."""
-
-    frequency: float  # Hz, as the lines correct it where it is some percent off
-    other: OtherSpeed | None
-
-
-def speed_of_lines(recording: Recording, given: float, teeth: int | None) -> SpeedOfLines:
-    """What the lines of a recording say of a speed that was stated, Hz."""
-    long = _frames(recording, given, _LONG)
-    lines = LinesOfRecord(long, given, teeth)
-    other = lines.other_speed()
-    if other is not None and other.relation == REFUTED:
-        return SpeedOfLines(given, other)
-    mean = mean_about_given(long, given, teeth or 1)
-    return SpeedOfLines(given if mean is None else lines.corrected(mean), other)
 
 
 def _stated_speed(

@@ -37,7 +37,7 @@ _MAINS, _MAINS_TOLERANCE, _MAINS_ORDERS = (50.0, 60.0), 2e-3, 12
 _OF_MOTOR = ("current", "power", "torque")
 #: frames that show what is there beside a line, or a line without sidebands; the same where
 #: nothing else speaks for it
-_FRAMES, _MANY_FRAMES = 5, 10
+FRAMES, _MANY_FRAMES = 5, 10
 #: multiple of a spacing of lines up to which simple fractions of it may be the teeth
 _LOW_FRACTION = 8.0
 #: relative accuracy of a spacing where many lines show it
@@ -60,10 +60,10 @@ def is_line_of_cut(evidence: Evidence, rows: slice) -> bool:
         return False
     sidebands = _median_sidebands(evidence, rows)
     count = rows.stop - rows.start
-    if count >= _FRAMES:
+    if count >= FRAMES:
         sidebands = max(sidebands, line.sidebands)
     is_dominant = (
-        count >= (_FRAMES if evidence.rest is not None else _MANY_FRAMES)
+        count >= (FRAMES if evidence.rest is not None else _MANY_FRAMES)
         and _alone(evidence, rows) >= _WITHOUT_SIDEBANDS
         and is_limit_cycle(evidence, rows, line.frequency)
     )
@@ -198,7 +198,7 @@ def _rose(evidence: Evidence, rows: slice, line: float) -> bool:
     frames = evidence.frames
     others = ~evidence.silent
     others[rows] = False
-    if others.sum() < _FRAMES:
+    if others.sum() < FRAMES:
         return False
     near = np.abs(frames.frequency - line) < frames.half_width
     power = frames.power[:, near].sum(axis=1)

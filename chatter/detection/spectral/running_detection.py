@@ -1,4 +1,4 @@
-"""Chatter detection while a recording goes on: a verdict every revolution."""
+"""Chatter detection while a recording goes on: a verdict every revolution, or every 20 ms."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from chatter.detection.spectral.activity import are_cutting, idle_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
-from chatter.detection.spectral.frame_evidence import Evidence, SpeedOfLines, speed_of_lines
-from chatter.detection.spectral.line_of_cut import is_line_of_cut
+from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.judged_together import JudgedTogether, judged_together
+from chatter.detection.spectral.line_of_cut import FRAMES, is_line_of_cut
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
     Revolution,
@@ -32,10 +33,11 @@ from chatter.detection.spectral.segments import (
     STABLE,
 )
 from chatter.detection.spectral.spectra import Frames, above_floor, added_up, spectrum_of
-from chatter.detection.spectral.stated_speed import REFUTED
 
 Array = NDArray[np.float64]
 
+#: least time from one verdict to the next, s: revolutions of fast spindles take less than a verdict
+_SHORTEST_HOP = 0.02
 #: revolutions of the window, and its least length, s
 _REVOLUTIONS, _SHORTEST = 24.0, 0.25
 #: windows that the speed is read off, one every quarter of a window
@@ -45,8 +47,10 @@ _WINDOWS, _QUARTER = 24, 4
 _RANGE, _SIGNIFICANT, _UNCERTAINTY = 0.015, 8.0, 1e-3
 #: such windows that a verdict rests on
 _HISTORY = 48
-#: such windows from one check of the speed to the next
-_CHECKED_EVERY = 16
+#: such windows from one look at them together to the next, and the time, s, at the least
+_TOGETHER_EVERY, _TOGETHER_SHORTEST = 16, 2.0
+#: share of the power of a line down to which it goes on
+_AS_BEFORE = 0.25
 #: verdicts in a row of which the first is believed
 _IN_A_ROW = 2
 #: levels that tell idle from cutting
@@ -77,6 +81,14 @@ class _Window(NamedTuple):
     level: float  # dB
 
 
+class _Held(NamedTuple):
+    """Chatter that the latest windows showed together."""
+
+    frequency: float  # Hz
+    share: float
+    power: float  # near the frequency, of the last window
+
+
 class RunningDetection:
     """Detects chatter in samples as they come.
 
@@ -95,7 +107,8 @@ class RunningDetection:
         #: Hz: as it is read off the lines, about what is taken for given, and as it was stated
         self._speed = self._given = self._stated = spindle_frequency
         self._teeth = teeth
-        self._hop = max(round(1.0 / (spindle_frequency * start.time_step)), 1)
+        hop = max(1.0 / spindle_frequency, _SHORTEST_HOP)
+        self._hop = max(round(hop / start.time_step), 1)
         length = max(_REVOLUTIONS / spindle_frequency, _SHORTEST)
         self._window = round(length / start.time_step)
         self._samples = np.empty((0, len(start.channels)))
@@ -113,15 +126,22 @@ class RunningDetection:
         self._cuts_when_quiet = False
         # beside the verdicts, which it would hold up
         self._background = ThreadPoolExecutor(1)
-        self._checked: Future[SpeedOfLines] | None = None
+        self._together: Future[JudgedTogether] | None = None
+        quarter = self._quarter * self._hop * start.time_step
+        self._together_every = max(_TOGETHER_EVERY, math.ceil(_TOGETHER_SHORTEST / quarter))
+        #: chatter that windows showed together, and that holds
+        self._held: _Held | None = None
 
     @property
-    def checks_speed(self) -> bool:
-        """Whether a check of the speed is under way, beside the verdicts."""
-        return self._checked is not None and not self._checked.done()
+    def judges_together(self) -> bool:
+        """Whether the latest windows are being judged together, beside the verdicts."""
+        return self._together is not None and not self._together.done()
 
     def take(self, values: Array) -> list[Observation]:
-        """Take samples (n, k); return an observation for each revolution that they complete."""
+        """Take samples (n, k); return an observation for each step that they complete.
+
+        A step is a revolution, or 20 ms where that is less.
+        """
         self._samples = np.concatenate([self._samples, values])
         found = []
         while len(self._samples) >= self._window + self._hop:
@@ -136,10 +156,15 @@ class RunningDetection:
         self._levels.append(window.level)
         self._verdict = self._verdict_of(window)
         time = self._start.start + (self._taken + self._window) * self._start.time_step
-        line = window.line
-        frequency = line.frequency if self._verdict == CHATTER else math.nan
+        verdict, frequency, share = self._verdict, window.line.frequency, window.line.share
+        if verdict == IDLE:
+            self._held = None
+        elif verdict != CHATTER and self._held is not None:
+            verdict, (frequency, share, _) = CHATTER, self._held
+        if verdict != CHATTER:
+            frequency = math.nan
         return Observation(
-            time, self._verdict, frequency, line.share, self._speed,
+            time, verdict, frequency, share, self._speed,
             self._speed_is_refuted, self._given != self._stated,
         )  # fmt: skip
 
@@ -154,8 +179,16 @@ class RunningDetection:
         if self._large < _IN_A_ROW:
             # on the harmonics of a wrong speed lies what chatters as well
             return NOT_JUDGED if self._speed_is_refuted else STABLE
-        # looked at again as it goes on, for the more windows there are the surer it is
-        return CHATTER if is_line_of_cut(*self._evidence(window)) else NOT_JUDGED
+        # looked at again as it goes on, for the more windows there are the surer it is, until what
+        # was there before the line is forgotten
+        evidence, rows = self._evidence(window)
+        if chattered and evidence.rest is None and self._is_old(rows):
+            return CHATTER
+        return CHATTER if is_line_of_cut(evidence, rows) else NOT_JUDGED
+
+    def _is_old(self, rows: slice) -> bool:
+        """Whether too little is remembered of the time before a line to tell it from the line."""
+        return len(self._history) == _HISTORY and rows.start < FRAMES
 
     def _window_of(self, values: Array) -> _Window:
         start = self._start
@@ -181,22 +214,40 @@ class RunningDetection:
         """Keep windows a quarter of their length apart."""
         if self._count % self._quarter == 0:
             self._history.append(window)
-            self._check_speed()
+            self._judge_together()
         self._count += 1
 
-    def _check_speed(self) -> None:
-        """Ask every so many windows, beside the verdicts, whether the lines refute the speed."""
-        if self._checked is not None and self._checked.done():
-            found = self._checked.result()
-            self._speed_is_refuted = found.other is not None and found.other.relation == REFUTED
-            if abs(found.frequency / self._given - 1.0) > _RANGE:
-                self._take_speed(found.frequency)
-            self._checked = None
-        if self._checked is None and (self._count // self._quarter + 1) % _CHECKED_EVERY == 0:
+    def _judge_together(self) -> None:
+        """Judge every so many windows together, beside the verdicts: the speed, and chatter."""
+        if self._together is not None and self._together.done():
+            found = self._together.result()
+            self._speed_is_refuted = found.speed_is_refuted
+            if abs(found.spindle_frequency / self._given - 1.0) > _RANGE:
+                self._take_speed(found.spindle_frequency)
+            if not math.isnan(found.chatter_frequency):
+                power = self._power_near(found.chatter_frequency)
+                self._held = _Held(found.chatter_frequency, found.share, power)
+            elif found.shows_rest or found.speed_is_refuted or not self._goes_on():
+                self._held = None
+            self._together = None
+        if (
+            self._together is None
+            and (self._count // self._quarter + 1) % self._together_every == 0
+        ):
             joined = _joined([one.recording for one in self._history])
-            self._checked = self._background.submit(
-                speed_of_lines, joined, self._given, self._teeth
+            self._together = self._background.submit(
+                judged_together, joined, self._given, self._teeth
             )
+
+    def _power_near(self, frequency: float) -> float:
+        frames = self._history[-1].frames
+        near = np.abs(frames.frequency - frequency) < frames.half_width
+        return float(frames.power[0, near].sum())
+
+    def _goes_on(self) -> bool:
+        """Whether the line of windows together is as it was; how it began may be forgotten."""
+        held = self._held
+        return held is not None and self._power_near(held.frequency) > _AS_BEFORE * held.power
 
     def _take_speed(self, frequency: float) -> None:
         """Go on with a speed, Hz, by which the windows of late have other lines."""

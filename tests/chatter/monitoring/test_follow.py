@@ -65,7 +65,7 @@ def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(fa
         observed += found.take(part)
         # the check goes on beside the verdicts: as long as it may take where samples come in time
         deadline = clock_time.monotonic() + 20.0
-        while found.checks_speed and clock_time.monotonic() < deadline:
+        while found.judges_together and clock_time.monotonic() < deadline:
             clock_time.sleep(0.005)
     last = observed[-1]
     assert last.speed_is_refuted
@@ -82,7 +82,7 @@ def test_a_speed_some_percent_off_is_read_off_the_lines(factor, begin, verdict):
     for part in np.array_split(values, 40):
         observed += found.take(part)
         deadline = clock_time.monotonic() + 20.0
-        while found.checks_speed and clock_time.monotonic() < deadline:
+        while found.judges_together and clock_time.monotonic() < deadline:
             clock_time.sleep(0.005)
     assert not observed[0].speed_is_corrected
     last = observed[-1]
@@ -108,7 +108,7 @@ def test_the_right_speed_is_not_refuted():
         observed = []
         for part in np.array_split(values, 40):
             observed += found.take(part)
-            while found.checks_speed:
+            while found.judges_together:
                 clock_time.sleep(0.005)
         assert not any(one.speed_is_refuted or one.speed_is_corrected for one in observed)
         assert observed[-1].verdict == ("chatter" if begin == 0.0 else "stable")
