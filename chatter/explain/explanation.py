@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.given_path import path_given
+from chatter.description.whole_files import write_whole
 from chatter.explain.checking import Checked, checked
 from chatter.explain.criteria import MOST_PROBABLE, MOST_PROBABLE_BESIDE_UNKNOWN, OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
@@ -323,14 +324,16 @@ class Explanation(NotebookResult):
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.json, report.html, residual.png and case-updated.toml."""
-        summary, picture = self.summary(), self.plot()
+        summary = self.summary()
+        picture = presentation("plots.style").png_of(self.plot())
         page = presentation("report.explanation").page_of(self, summary, picture)
         texts = {"explanation.json": as_json(summary), "report.html": page}
-        written = write_results(folder, texts, {"residual.png": picture})
-        path = Path(folder) / "case-updated.toml"
-        self.case.save(path)
+        written = write_results(folder, texts, {})
+        residuals, case = (Path(folder) / name for name in ("residual.png", "case-updated.toml"))
+        write_whole(residuals, picture)
+        self.case.save(case)
         self.predictions.kept.discard()
-        return [*written, path]
+        return [*written, residuals, case]
 
 
 @dataclass(frozen=True, eq=False)

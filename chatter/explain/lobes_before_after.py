@@ -11,12 +11,19 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.progress import no_progress
 from chatter.description.units import rpm
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
 from chatter.stability.diagram import StabilityDiagram
+from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lobes import lobes
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
+from chatter.stability.model import milling_model
+from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
 
 Array = NDArray[np.float64]
 
@@ -60,18 +67,18 @@ def lobes_before_after(
         return None
     cuts = KINDS[measurement.kind].cuts(measurement)
     try:
-        lowest = lobes(measurement.case, "zero-order").zero_order.lowest_depth
+        lowest = _zero_order(measurement.case).lowest_depth
         ranged = _ranged(cuts, lowest, _SPEEDS)
         diagrams = {model: lobes(case.patch(ranged)) for model, case in cases.items()}
         moved = 0.0
         if added is not None:
             few = _ranged(cuts, lowest, _ASKED)
             repaired = list(cases.values())[-1]
-            moved = _largest_change(*(lobes(one.patch(few)) for one in (added.without, repaired)))
+            moved = _largest_change(*(_limits(one.patch(few)) for one in (added.without, repaired)))
     except (InputError, RunError) as error:
         return LobesBeforeAfter({}, cuts, (f"No lobes: {error}.",))
     sentences = [
-        f"From {before} to {after}, {_change(diagrams[before], diagrams[after])}"
+        f"From {before} to {after}, {_change(diagrams[before].limits, diagrams[after].limits)}"
         for before, after in pairwise(diagrams)
     ]
     if added is not None and moved < _SAME:
@@ -106,21 +113,32 @@ def _ranged(cuts: Cuts, lowest: float, count: int) -> dict[str, dict[str, str | 
     }
 
 
-def _finite(before: StabilityDiagram, after: StabilityDiagram) -> tuple[Array, Array, Array]:
-    old, new = before.limits.critical_depth, after.limits.critical_depth
+def _limits(case: Case) -> LimitCurve:
+    """Limits alone, without what else a diagram tells."""
+    depths = axial_depths(case, maximum_depth(case, _zero_order(case)))
+    model, speeds = milling_model(case), spindle_speeds(case)
+    return chosen_method(case).limits(model, speeds, depths, fixed_steps(case), no_progress)
+
+
+def _zero_order(case: Case) -> ZeroOrderLimit:
+    return zero_order_of(milling_model(case), spindle_speeds(case))
+
+
+def _finite(before: LimitCurve, after: LimitCurve) -> tuple[Array, Array, Array]:
+    old, new = before.critical_depth, after.critical_depth
     both = np.isfinite(old) & np.isfinite(new)
-    return rpm(before.limits.spindle_speed[both]), old[both], new[both]
+    return rpm(before.spindle_speed[both]), old[both], new[both]
 
 
-def _largest_change(before: StabilityDiagram, after: StabilityDiagram) -> float:
+def _largest_change(before: LimitCurve, after: LimitCurve) -> float:
     _, old, new = _finite(before, after)
-    appeared = np.isfinite(before.limits.critical_depth) != np.isfinite(after.limits.critical_depth)
+    appeared = np.isfinite(before.critical_depth) != np.isfinite(after.critical_depth)
     if appeared.any() or old.size == 0:
         return 1.0 if appeared.any() else 0.0
     return float(np.max(np.abs(new / old - 1.0)))
 
 
-def _change(before: StabilityDiagram, after: StabilityDiagram) -> str:
+def _change(before: LimitCurve, after: LimitCurve) -> str:
     speed, old, new = _finite(before, after)
     if old.size == 0:
         return "no limit lies within the depths searched in both."

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
@@ -15,15 +14,15 @@ from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words
 from chatter.plots.explanation import plot_errors, plot_lobes_before_after, plot_terms
 from chatter.plots.residual_diagnostics import plot_findings
-from chatter.plots.style import write_png
+from chatter.plots.style import png_of
 from chatter.report.parameters import parameter_row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) -> str:
-    """Page of an explanation, its summary as in explanation.json, and a picture of residuals."""
+def page_of(explanation: Explanation, summary: dict[str, Any], residuals: bytes) -> str:
+    """Page of an explanation, its summary as in explanation.json, and its residuals as a PNG."""
     found = explanation.found
     return (
         _templates()
@@ -40,7 +39,7 @@ def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) 
             at_noise=found.is_at_noise,
             fit=found.final if explanation.adds_effects else found.base,
             lobes=explanation.lobes,
-            residuals=picture,
+            residuals=residuals,
             learnt=explanation.empirical,
             follows=FOLLOWS,
             in_words=in_words,
@@ -75,6 +74,7 @@ def _templates() -> Environment:
         "number": _number,
         "percent": _percent,
         "parameter": lambda one, name: parameter_row(name, one),
+        "png": png_of,
         "embedded": _embedded,
         "drawn": _drawn,
         "errors_drawn": plot_errors,
@@ -98,8 +98,6 @@ def _drawn(finding: Finding) -> Figure:
     return plot_findings([finding])
 
 
-def _embedded(figure: Figure) -> str:
+def _embedded(png: bytes) -> str:
     """Picture as the source of an image inside the page."""
-    buffer = BytesIO()
-    write_png(figure, buffer)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
+    return "data:image/png;base64," + base64.b64encode(png).decode("ascii")
