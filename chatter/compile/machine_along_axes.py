@@ -1,5 +1,7 @@
 """The machine of a file along the travel of its axes, where it changes with it."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -39,6 +41,9 @@ _SAME = 1e-9
 _NEAR_START = 0.25
 #: part of a distance between positions that is rounding
 _ROUNDING = 1e-6
+
+#: travels of a file whose machines are kept for the next move or cut along them
+_KEPT = 4
 
 #: rows (n,) that are read, by name, of a machine with its axes at positions, m
 Outputs = Callable[[Machine, Mapping[str, float]], Mapping[str, NDArray[np.float64]]]
@@ -106,7 +111,38 @@ def machine_along_axes(
     )
     if count == 1:
         return None
-    places = _Places(file, start, state, here)
+    kept = file.once("along the axes", dict)
+    key = repr((travelled, count, start, state))
+    if key not in kept:
+        while len(kept) >= _KEPT:
+            del kept[next(iter(kept))]
+        kept[key] = _travelling(_Places(file, start, state, here), travelled, count)
+    found = kept[key]
+    if found is None:
+        return None
+    machines = found.machines
+    if not state.friction:
+        machines = tuple(one.without_friction() for one in machines)
+    rows = tuple(
+        outputs(machine, start | {axis: start[axis] + x for axis, x in offset.items()})
+        for machine, offset in zip(machines, _offsets(found.grid), strict=True)
+    )
+    return MachinesAlong(tuple(found.grid), tuple(found.grid.values()), machines, rows, found.parts)
+
+
+class _Travelling(NamedTuple):
+    """Machine of a file at a grid of positions of the axes that change it."""
+
+    grid: dict[str, NDArray[np.float64]]  # offsets of each axis, m
+    machines: tuple[Machine, ...]
+    parts: tuple[int, ...]  # as in `MachinesAlong`
+
+
+def _travelling(
+    places: _Places, travelled: Mapping[str, tuple[float, float]], count: int | None
+) -> _Travelling | None:
+    """Machine along its axes; None where no axis travels far enough, or none changes it."""
+    file = places.file
     changing = [
         axis
         for axis, (low, high) in travelled.items()
@@ -121,21 +157,10 @@ def machine_along_axes(
     grid, machines = _on_grid(places, {axis: travelled[axis] for axis in changing}, count)
     if not probed and not _changes(machines):
         return None
-    if not state.friction:
-        machines = tuple(one.without_friction() for one in machines)
-    offsets = _offsets(grid)
-    return MachinesAlong(
-        tuple(grid),
-        tuple(grid.values()),
-        machines,
-        tuple(
-            outputs(machine, start | {axis: start[axis] + x for axis, x in offset.items()})
-            for machine, offset in zip(machines, offsets, strict=True)
-        ),
-        _parts_by_axis(
-            machines, tuple(grid.values()), _first(offsets), file.highest_frequency or _HIGHEST
-        ),
+    parts = _parts_by_axis(
+        machines, tuple(grid.values()), _first(_offsets(grid)), file.highest_frequency or _HIGHEST
     )
+    return _Travelling(grid, machines, parts)
 
 
 class _Places:

@@ -133,14 +133,16 @@ def moving_structure(
     )
     shapes = np.array([np.asarray(one) @ modes.shapes for one in rows])
     free = _free(stiffness, omega == 0.0)
-    held = np.ix_(~free, ~free)
+    held = np.flatnonzero(~free)
+    values, vectors = _principal(stiffness, held)
     # a machine that floats turns as a whole from position to position, and has no logarithm
-    resists = all(np.all(np.linalg.eigvalsh(one[held]) > 0.0) for one in stiffness)
+    resists = bool(np.all(values > 0.0))
     if resists:
-        stiffness = np.array([_logarithm(one, held) for one in stiffness])
+        stiffness = _of_values(stiffness, held, np.log(values), vectors)
     positions, (stiffness, damping, shapes) = _refined(along, (stiffness, damping, shapes))
     if resists:
-        stiffness = np.array([_exponential(one, held) for one in stiffness])
+        values, vectors = _principal(stiffness, held)
+        stiffness = _of_values(stiffness, held, np.exp(values), vectors)
     along = along._replace(positions=positions)
     start = _start(along)
     tables = [
@@ -273,20 +275,24 @@ def _free(stiffness: NDArray[np.float64], rigid: NDArray[np.bool_]) -> NDArray[n
     return free
 
 
-def _logarithm(stiffness: NDArray[np.float64], held: tuple) -> NDArray[np.float64]:
-    """Logarithm of the stiffness of the motions that something resists."""
-    values, vectors = np.linalg.eigh(stiffness[held])
-    whole = np.zeros_like(stiffness)
-    whole[held] = (vectors * np.log(values)) @ vectors.T
-    return whole
+def _principal(
+    matrices: NDArray[np.float64], held: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Eigenvalues (t, m) and eigenvectors (t, m, m) over the motions that something resists."""
+    return np.linalg.eigh(matrices[:, held[:, None], held])
 
 
-def _exponential(logarithm: NDArray[np.float64], held: tuple) -> NDArray[np.float64]:
-    """Stiffness of such a logarithm."""
-    values, vectors = np.linalg.eigh(logarithm[held])
-    whole = np.zeros_like(logarithm)
-    whole[held] = (vectors * np.exp(values)) @ vectors.T
-    return whole
+def _of_values(
+    matrices: NDArray[np.float64],
+    held: NDArray[np.int64],
+    values: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Matrices (t, n, n) of other eigenvalues over those motions, of zeros elsewhere."""
+    changed = np.zeros_like(matrices)
+    over = (vectors * values[:, None, :]) @ vectors.transpose(0, 2, 1)
+    changed[:, held[:, None], held] = over
+    return changed
 
 
 def _columns(

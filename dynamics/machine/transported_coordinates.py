@@ -87,8 +87,8 @@ def _turned(full: Sequence[Machine], machines: Sequence[Machine]) -> tuple[Machi
     bases = np.array([one.basis for one in machines])
     count, freedoms, size = bases.shape
     flat = bases.transpose(1, 0, 2).reshape(freedoms, count * size)
-    overlap = (flat.T @ (mass @ flat)).reshape(count, size, count, size).transpose(0, 2, 1, 3)
-    closeness = np.linalg.norm(overlap, axis=(2, 3))
+    overlap = (flat.T @ (mass @ flat)).reshape(count, size, count, size)
+    closeness = np.einsum("asbt,asbt->ab", overlap, overlap)
     turns = {0: np.eye(size)}
     while len(turns) < count:
         there = list(turns)
@@ -96,7 +96,7 @@ def _turned(full: Sequence[Machine], machines: Sequence[Machine]) -> tuple[Machi
         near = closeness[np.ix_(there, others)]
         row, column = np.unravel_index(np.argmax(near), near.shape)
         neighbour, new = there[row], others[column]
-        turn = _turn(overlap[new, neighbour] @ turns[neighbour], rigid[0])
+        turn = _turn(overlap[new, :, neighbour] @ turns[neighbour], rigid[0])
         if turn is None:
             return None
         turns[new] = turn

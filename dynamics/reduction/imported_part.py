@@ -97,9 +97,11 @@ class ImportedPart:
             If the position is not a point and there is no rail, or it lies off its ends.
         """
         at = np.asarray(position, dtype=np.float64)
-        off = np.sum((self._all_positions - at) ** 2, axis=1)
-        if off.min() <= SAME_POSITION**2:
-            return self.structure.points[list(self.positions)[int(off.argmin())]]
+        apart = self._all_positions - at
+        off = np.einsum("kd,kd->k", apart, apart)
+        nearest = int(off.argmin())
+        if off[nearest] <= SAME_POSITION**2:
+            return self.structure.points[list(self.positions)[nearest]]
         if not self.rails:
             points = "; ".join(f'"{name}" at {_shown(one)}' for name, one in self.positions.items())
             raise StructureError(
@@ -148,9 +150,11 @@ class ImportedPart:
 
     def _on_rail(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
         starts, alongs = self._starts_and_alongs
-        squared = np.sum(alongs**2, axis=1)
-        shares = np.clip(np.sum((at - starts) * alongs, axis=1) / squared, 0.0, 1.0)
-        off = np.sum((at - starts - shares[:, None] * alongs) ** 2, axis=1)
+        apart = at - starts
+        squared = np.einsum("kd,kd->k", alongs, alongs)
+        shares = np.clip(np.einsum("kd,kd->k", apart, alongs) / squared, 0.0, 1.0)
+        apart -= shares[:, None] * alongs
+        off = np.einsum("kd,kd->k", apart, apart)
         span = self._spans[int(np.argmin(off))]
         if span.is_beyond(at):
             ends = "; ".join(
@@ -215,22 +219,24 @@ def bent_beam(
     axis = along / length
     lengthwise = np.outer(axis, axis)
     across = np.eye(3) - lengthwise
+    crossed = _crossed_with(axis)
     # rotation to slope of the displacement along the axis, theta x axis
-    turning = -_crossed_with(axis)
+    turning = -crossed
     s = share
     values = (2 * s**3 - 3 * s**2 + 1, length * (s**3 - 2 * s**2 + s))
     values += (3 * s**2 - 2 * s**3, length * (s**3 - s**2))
     slopes = ((6 * s**2 - 6 * s) / length, 3 * s**2 - 4 * s + 1)
     slopes += ((6 * s - 6 * s**2) / length, 3 * s**2 - 2 * s)
-    ends = (first[:3], turning @ first[3:], second[:3], turning @ second[3:])
-    deflection, slope = (
-        across @ sum(value * end for value, end in zip(shape, ends, strict=True))
-        for shape in (values, slopes)
-    )
-    straight = (1.0 - s) * first + s * second
-    displacement = lengthwise @ straight[:3] + deflection
-    rotation = lengthwise @ straight[3:] + _crossed_with(axis) @ slope
-    return np.vstack([displacement, rotation])
+    # motion (6, 6) per displacements and rotations of either end
+    ends = []
+    for end, straight in enumerate((1.0 - s, s)):
+        motion = np.empty((6, 6))
+        motion[:3, :3] = straight * lengthwise + values[2 * end] * across
+        motion[:3, 3:] = values[2 * end + 1] * (across @ turning)
+        motion[3:, :3] = slopes[2 * end] * (crossed @ across)
+        motion[3:, 3:] = straight * lengthwise + slopes[2 * end + 1] * (crossed @ across @ turning)
+        ends.append(motion)
+    return ends[0] @ first + ends[1] @ second
 
 
 def _crossed_with(vector: NDArray[np.float64]) -> NDArray[np.float64]:

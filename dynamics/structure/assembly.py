@@ -5,7 +5,7 @@ resists it there.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,7 @@ class Assembly:
     structure: LinearStructure
     parts: Mapping[str, Part]
     columns: Mapping[str, slice]  # freedoms of each part
+    _motions: dict[tuple[str, bytes], NDArray[np.float64]] = field(default_factory=dict)
 
     def motion(self, who: str, part: str, at: ArrayLike) -> NDArray[np.float64]:
         """Motion (6, n) of a part at a position, m, per freedom; none of the ground.
@@ -30,19 +31,34 @@ class Assembly:
         Raises StructureError if there is no such part; the message begins with `who`.
         """
         motion = np.zeros((6, self.structure.size))
-        if part == GROUND:
-            return motion
+        if part != GROUND:
+            columns = self.columns_of(who, part)
+            motion[:, columns] = self.own_motion(part, at)
+        return motion
+
+    def columns_of(self, who: str, part: str) -> slice:
+        """Freedoms of a part, which is not the ground; StructureError if there is none."""
         if part not in self.parts:
             known = ", ".join(f'"{name}"' for name in self.parts)
             raise StructureError(f'{who}: there is no body or beam "{part}"; there are {known}')
-        motion[:, self.columns[part]] = self.parts[part].motion_at(at)
-        return motion
+        return self.columns[part]
+
+    def own_motion(self, part: str, at: ArrayLike) -> NDArray[np.float64]:
+        """Motion (6, k) of a part at a position, m, per freedom of its own."""
+        # nut, scale, friction and motor of an axis are at one place
+        key = part, np.asarray(at, dtype=np.float64).tobytes()
+        if key not in self._motions:
+            self._motions[key] = self.parts[part].motion_at(at)
+        return self._motions[key]
 
     def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
         """Row (n,) of the sum of motions, as a port of the structure."""
-        return sum(
-            np.asarray(term.direction) @ self.motion(who, term.part, term.at) for term in terms
-        )
+        row = np.zeros(self.structure.size)
+        for term in terms:
+            if term.part != GROUND:
+                columns = self.columns_of(who, term.part)
+                row[columns] += np.asarray(term.direction) @ self.own_motion(term.part, term.at)
+        return row
 
 
 def assembly(
@@ -79,7 +95,7 @@ def assembly(
         points={},
     )
     bare = Assembly(loose, parts, columns)
-    deformations = [joint.deformation(_relative_motion(joint, bare)) for joint in joints]
+    deformations = [_deformation(joint, bare) for joint in joints]
     deformations += [bare.row(f'coupling "{one.name}"', one.terms)[None, :] for one in couplings]
     links: list[Connector | Coupling] = [*joints, *couplings]
     stiffness = [np.atleast_1d(one.stiffness) for one in links]
@@ -91,7 +107,7 @@ def assembly(
         bare.structure.stiffness + _over(deformations, stiffness),
         {one.name: bare.motion(f'point "{one.name}"', one.body, one.at) for one in points},
     )
-    return Assembly(whole, parts, columns)
+    return replace(bare, structure=whole)
 
 
 def assemble(
@@ -142,9 +158,14 @@ def _columns(sizes: Mapping[str, int]) -> dict[str, slice]:
     }
 
 
-def _relative_motion(joint: Connector, bare: Assembly) -> NDArray[np.float64]:
-    who = f'connector "{joint.name}"'
-    return bare.motion(who, joint.first, joint.at) - bare.motion(who, joint.second, joint.at)
+def _deformation(joint: Connector, bare: Assembly) -> NDArray[np.float64]:
+    """Relative motion (6, n) of both sides of a connector in its own axes."""
+    deformation = np.zeros((6, bare.structure.size))
+    for part, sign in ((joint.first, 1.0), (joint.second, -1.0)):
+        if part != GROUND:
+            columns = bare.columns_of(f'connector "{joint.name}"', part)
+            deformation[:, columns] = sign * joint.in_own_axes(bare.own_motion(part, joint.at))
+    return deformation
 
 
 def _side_by_side(matrices: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:

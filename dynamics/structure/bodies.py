@@ -170,9 +170,9 @@ class Connector:
             raise StructureError(f"{where}: the rows of axes must be perpendicular unit vectors")
         object.__setattr__(self, "axes", axes)
 
-    def deformation(self, relative: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Turn relative motion (6, n) at the position into the connector's own axes."""
-        return np.vstack([self.axes @ relative[:3], self.axes @ relative[3:]])
+    def in_own_axes(self, motion: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn motion (6, n) at the position into the connector's own axes."""
+        return np.vstack([self.axes @ motion[:3], self.axes @ motion[3:]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,7 +207,7 @@ def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> 
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         array = np.empty(0)
-    if array.shape != shape or not np.all(np.isfinite(array)):
+    if array.shape != shape or not np.isfinite(array).all():
         size = " x ".join(str(length) for length in shape)
         raise StructureError(f"{where}: {what} must be {size} finite numbers, not {values!r}")
     return array

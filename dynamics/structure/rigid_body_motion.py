@@ -11,6 +11,8 @@ from dynamics.structure.linear_structure import StructureError
 DIRECTIONS = ("x", "y", "z", "rotation about x", "rotation about y", "rotation about z")
 # Of rows scaled to unit length; a true constraint is far above it.
 RANK_TOLERANCE = 1e-9
+# Of pivots, over the largest: above it a constraint is a true one without a further look.
+SURE = 1e-6
 # Part of a free motion, scaled to the machine's size, that is worth naming.
 NAMED = 0.05
 
@@ -27,10 +29,7 @@ def free_motions(
     rotations (rad), and which of them turn (n,). Motions (n, free), rotations times the longest
     lever; each has a 1 where the others have 0.
     """
-    lever = np.max(np.abs(restrained[:, turning]), initial=0.0)
-    rows = restrained / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
-    norms = np.linalg.norm(rows, axis=1)
-    rows = rows[norms > 0.0] / norms[norms > 0.0, None]
+    rows = _scaled(restrained, turning)
     if not len(rows):
         return np.eye(len(turning))
     # the triangle of the rows has their null space, and is no taller than wide
@@ -42,6 +41,26 @@ def free_motions(
     return free @ np.linalg.inv(free[pivots])
 
 
+def _scaled(restrained: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Rows of unit length, rotations times the longest lever; those of zeros are left out."""
+    lever = np.max(np.abs(restrained[:, turning]), initial=0.0)
+    rows = restrained / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
+    norms = np.sqrt(np.einsum("sn,sn->s", rows, rows))
+    return rows[norms > 0.0] / norms[norms > 0.0, None]
+
+
+def _surely_held(restrained: NDArray[np.float64], turning: NDArray[np.bool_]) -> int:
+    """Number of motions that springs hold, where no motion is held by next to nothing.
+
+    Fewer than there are otherwise: singular values tell then.
+    """
+    rows = _scaled(restrained, turning)
+    if not len(rows):
+        return 0
+    pivots = np.abs(np.diag(scipy.linalg.qr(rows, mode="r", pivoting=True)[0]))
+    return int(np.sum(pivots > SURE * pivots[0]))
+
+
 def refuse_free_motion(
     restrained: NDArray[np.float64], turning: NDArray[np.bool_], labels: Sequence[str], allowed: int
 ) -> None:
@@ -50,6 +69,8 @@ def refuse_free_motion(
     Arguments as for `free_motions`, and names of the rigid motions (n,). The StructureError names
     parts and directions.
     """
+    if len(turning) - _surely_held(restrained, turning) <= allowed:
+        return
     free = free_motions(restrained, turning)
     if free.shape[1] <= allowed:
         return

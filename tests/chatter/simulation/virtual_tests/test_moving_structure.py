@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
+from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import load_machine
@@ -15,6 +15,7 @@ from chatter.engine.loop import Laws, run
 from chatter.engine.record import port_record
 from chatter.simulation.virtual_tests.from_file import file_move
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
+from dynamics.machine.along_axes import machines_at
 from dynamics.machine.description import Machine
 from dynamics.machine.moving_structure import (
     MachinesAlong,
@@ -344,3 +345,37 @@ def test_friction_on_a_mode_stays_on_it(screw_machine):
 
 def test_one_position_keeps_the_structure(screw_machine):
     assert grid_of(screw_machine, 1) is None
+
+
+def test_a_further_move_of_a_file_takes_its_machines(screw_machine, monkeypatch):
+    """Machines along a travel are made once of a file, whatever reads them; others are others."""
+    file = screw_machine.patch({})
+    first = moved(file, 5)
+    made = []
+
+    def counted(*given):
+        made.append(given)
+        return machines_at(*given)
+
+    monkeypatch.setattr("chatter.compile.machine_along_axes.machines_at", counted)
+    again = moved(file, 5)
+    assert not made
+    assert np.array_equal(again.tracking_error, first.tracking_error)
+    without = grid_of_state(file, StateOfMachine(friction=False))
+    assert not without.machines[0].frictions
+    assert len(made) == 1
+    braked = grid_of_state(file, StateOfMachine({"X": "brake"}))
+    elsewhere = grid_of_state(file, StateOfMachine(positions={"X": 0.05}))
+    assert len(made) == 3
+    stiffest = [np.max(one.machines[0].structure.stiffness) for one in (without, braked, elsewhere)]
+    assert len(set(stiffest)) == 3
+    softer = file.patch({"damping_ratio": 0.05})
+    assert np.any(grid_of_state(softer, StateOfMachine()).machines[0].structure.damping)
+    assert len(made) == 4
+    for high in (0.3, 0.4, 0.5, 0.55):
+        machine_along_axes(file, {"X": (0.0, high)}, lambda *_: {}, 3)
+    assert len(file.once("along the axes", dict)) == 4  # not without end
+
+
+def grid_of_state(file, state):
+    return machine_along_axes(file, {"X": (0.0, 0.5)}, lambda *_: {}, 5, state)
