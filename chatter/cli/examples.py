@@ -11,8 +11,16 @@ from chatter.description.errors import InputError
 from chatter.report.console import print_json, print_table, print_written
 
 
+def _names() -> list[str]:
+    from chatter.io.shipped_examples import examples as shipped
+
+    return list(shipped())
+
+
 def examples(
-    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Which one.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME", help="Which one.", autocompletion=_names)
+    ] = None,
     run: Annotated[bool, typer.Option("--run", help="Run it instead of copying it.")] = False,
     open_picture: Annotated[
         bool, typer.Option("--open", help="Show the first picture on the desktop.")

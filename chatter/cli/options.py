@@ -55,7 +55,12 @@ Cluster = Annotated[
     ),
 ]
 Method = Annotated[
-    str | None, typer.Option("--method", help=f"{AUTO} (default), {', '.join(METHODS.names())}.")
+    str | None,
+    typer.Option(
+        "--method",
+        help=f"{AUTO} (default), {', '.join(METHODS.names())}.",
+        autocompletion=lambda: [AUTO, *METHODS.names()],
+    ),
 ]
 
 

@@ -5,7 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.plots import style
-from dynamics.frf.container import Frf
+from chatter.studies.frf_units import frf_unit
+from dynamics.frf.container import QUANTITY_UNIT, Frf
 from dynamics.identification.mode_indicators import mode_indicator_function
 from dynamics.identification.result import FrfModel, ModalFit
 
@@ -16,12 +17,8 @@ _CURVE_POINTS = 4000
 _HEADROOM = 0.15
 #: colour of the FRFs behind the poles
 _BEHIND = "#BBBBBB"
-#: quantity of an FRF -> unit in pictures, factor from SI
-FRF_UNITS = {
-    "receptance": ("um/N", 1e6),
-    "mobility": ("mm/s/N", 1e3),
-    "accelerance": ("m/s²/N", 1.0),
-}
+#: quantity of an FRF -> unit in which it is read, factor from SI
+FRF_UNITS = {quantity: frf_unit(unit) for quantity, unit in QUANTITY_UNIT.items()}
 
 
 def plot_fit(fit: ModalFit, title: str) -> Figure:

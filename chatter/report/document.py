@@ -13,7 +13,7 @@ import tomlkit
 from chatter.description.patchable import Description
 from chatter.description.path import field_at, parse_path
 from chatter.description.units import DIMENSIONS
-from chatter.report.parameters import read_in
+from chatter.report.parameters import dimension_read_in
 
 #: files of a folder that are listed by name; a folder of records may hold thousands
 _FILES_LISTED = 60
@@ -124,16 +124,16 @@ class Document:
 def rows_of(described: Description) -> list[list[str]]:
     """Keys and values of a description, in the units of its file; bare numbers have theirs too."""
     return [
-        [path, _shown(value, _si_unit(described, path, value))]
+        [path, _shown(value, _dimension(described, path, value))]
         for path, value in _leaves(tomlkit.parse(described.to_toml()).unwrap(), "")
     ]
 
 
-def _si_unit(described: Description, path: str, value: object) -> str:
-    """SI unit that bare numbers at a path have; empty for pure numbers."""
+def _dimension(described: Description, path: str, value: object) -> str:
+    """Dimension of the bare numbers at a path."""
     steps = parse_path(f"{path}[0]" if isinstance(value, list) else path)
     found = field_at(type(described), steps)
-    return "" if found is None else DIMENSIONS[found.dimension].unit
+    return "number" if found is None else found.dimension
 
 
 def _leaves(value: object, path: str) -> Iterator[tuple[str, object]]:
@@ -147,14 +147,14 @@ def _leaves(value: object, path: str) -> Iterator[tuple[str, object]]:
         yield path, value
 
 
-def _shown(value: object, unit: str) -> str:
+def _shown(value: object, dimension: str) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, int | float) and unit:
-        read, factor = read_in(unit, float(value))
+    if isinstance(value, int | float) and DIMENSIONS[dimension].unit:
+        read, factor = dimension_read_in(dimension, float(value))
         return f"{factor * value:.6g} {read}"
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, list):
-        return ", ".join(_shown(one, unit) for one in value)
+        return ", ".join(_shown(one, dimension) for one in value)
     return str(value)

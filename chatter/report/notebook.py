@@ -52,7 +52,7 @@ def _picture(drawn: Any) -> str:
     alive = interactive_picture(drawn) if _loads_bokeh() else None
     if alive is None:
         return image
-    # where scripts do not run, as in a notebook that is not trusted, the image is what is left
+    # scripts do not run in a notebook that is not trusted: there the image is shown
     return f"{alive}<details><summary>image</summary>{image}</details>"
 
 

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from chatter.description.units import DIMENSIONS
+
 #: SI unit -> units for larger and larger values: from which value on, name, number of it in one
 #: of SI
 _READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
@@ -22,6 +24,9 @@ _READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
     "1": ((0.0, "%", 100.0),),
     "1/s": ((0.0, "1/min", 60.0),),
 }
+#: dimensions that share their SI unit with another, and are read in it: a gain in 1/s, a rate
+#: of wear in 1/min
+_READ_IN_SI = frozenset({"gain"})
 
 
 def read_in(unit: str, value: float) -> tuple[str, float]:
@@ -31,6 +36,20 @@ def read_in(unit: str, value: float) -> tuple[str, float]:
         if abs(value) >= least:
             found, factor = name, of_si
     return found, factor
+
+
+def dimension_read_in(dimension: str, value: float) -> tuple[str, float]:
+    """Unit in which a value of a dimension is read, and its number in one of SI.
+
+    Parameters
+    ----------
+    dimension : str
+        A key of `chatter.description.units.DIMENSIONS`.
+    value : float
+        In SI.
+    """
+    unit = DIMENSIONS[dimension].unit
+    return (unit, 1.0) if dimension in _READ_IN_SI else read_in(unit, value)
 
 
 def parameter_row(name: str, one: Mapping[str, Any]) -> list[str]:

@@ -52,6 +52,13 @@ class MachineView:
         self.rest = ColumnDataSource({"xs": [], "ys": []})
         self.moved = ColumnDataSource({"xs": [], "ys": []})
         self._figure = self._shape_figure()
+        #: shown once there are shapes: above the results it would only take their room
+        self._animation = pn.Column(
+            pn.Row(self.mode, self.frequency),
+            self.player,
+            picture(self._figure, "mode-shape"),
+            visible=False,
+        )
         self.work = LongWork(session.root, show)
         self.call, self._result = pn.Column(), pn.Column()
         self.frf_button.on_click(lambda _: self.start("frf"))
@@ -69,13 +76,10 @@ class MachineView:
         choice = pn.Column(
             self.file, self.tests, self.frf_button, self.move, self.move_button, self.shapes_button
         )
-        animation = pn.Column(
-            pn.Row(self.mode, self.frequency), self.player, picture(self._figure, "mode-shape")
-        )
         return pn.Column(
             pn.Row(self.work.cancel_button, self.work.progress),
             self.work.message,
-            pn.Row(choice, animation),
+            pn.Row(choice, self._animation),
             self.call,
             self._result,
         )
@@ -137,6 +141,7 @@ class MachineView:
     def _opened(self) -> None:
         self.tests.options, self.move.options = [], []
         self._shapes, self.rest.data, self.moved.data = {}, _nothing(), _nothing()
+        self._animation.visible = False
         self._result.objects = []
         if self.file.value is None:
             return
@@ -181,6 +186,7 @@ class MachineView:
         self._figure.y_range.update(start=middle[1] - reach, end=middle[1] + reach)
         self.mode.param.update(end=max(2, len(self._shapes["frequency"])), value=1)
         self.player.value = _FRAMES // 4
+        self._animation.visible = True
         self.draw()
 
     def _shape_figure(self) -> Any:

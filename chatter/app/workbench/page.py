@@ -70,7 +70,8 @@ class Workbench:
             self.open(first)
             if text is not None:
                 self.session.set_text(text)
-            self.tabs.active = list(self.views).index("Stability")
+            sound = self.session.case is not None
+            self.tabs.active = list(self.views).index("Stability" if sound else "Case")
         self.tap_test.open_folder()
 
     def __panel__(self) -> pn.viewable.Viewable:

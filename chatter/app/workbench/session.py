@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 import tomlkit
 
-from chatter.description.case import Case, load, loads
+from chatter.app.workbench.folder_files import is_cut, is_machine
+from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
 from chatter.description.path import parse_path
 from chatter.description.stated_range import open_stated_ranges
@@ -79,13 +80,13 @@ class Session:
         """Names of the case files of cuts in the folder, and one level below."""
         found = sorted([*self.root.glob("*.toml"), *self.root.glob("*/*.toml")])
         inside = [path for path in found if path.resolve().is_relative_to(self.root)]
-        return [path.relative_to(self.root).as_posix() for path in inside if _is_cut(path)]
+        return [path.relative_to(self.root).as_posix() for path in inside if is_cut(path)]
 
     def machine_names(self) -> list[str]:
         """Names of the machine files in the folder, and one level below."""
         found = sorted([*self.root.glob("*.toml"), *self.root.glob("*/*.toml")])
         inside = [path for path in found if path.resolve().is_relative_to(self.root)]
-        return [path.relative_to(self.root).as_posix() for path in inside if _is_machine(path)]
+        return [path.relative_to(self.root).as_posix() for path in inside if is_machine(path)]
 
     def measurement_names(self) -> list[str]:
         """Names of the folders with a measurement.toml, down to two levels."""
@@ -96,12 +97,15 @@ class Session:
         return [path.relative_to(self.root).as_posix() for path in inside]
 
     def open(self, name: str) -> None:
-        """Open a case file; InputError if it cannot be read."""
+        """Open a case file, with its faults in `problems`; InputError if it is no text."""
         path = self.path(name)
-        load(path)
-        content = path.read_bytes()
+        try:
+            content = path.read_bytes()
+            text = content.decode("utf-8-sig")
+        except (OSError, UnicodeDecodeError):
+            raise InputError(f"{name}: cannot be read as text; a TOML file is required") from None
         self.name, self._on_disk = name, content
-        self.set_text(content.decode("utf-8-sig"))
+        self.set_text(text)
 
     def start(self, name: str, text: str) -> None:
         """Open a new case that is not saved yet; InputError if there is a file of the name."""
@@ -253,21 +257,3 @@ def _alike(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     first, second = one.get("direction", [1, 0, 0]), other.get("direction", [1, 0, 0])
     along = abs(sum(a * b for a, b in zip(first, second, strict=False)))
     return one.get("side", "tool") == other.get("side", "tool") and along > 0.7  # below 45 degrees
-
-
-def _is_cut(path: Path) -> bool:
-    """Whether the file has what a diagram is made of; a file that is no case has not."""
-    try:
-        case = load(path)
-    except InputError:
-        return False
-    return all((case.tool, case.material, case.cut, case.structure))
-
-
-def _is_machine(path: Path) -> bool:
-    from chatter.description.machine.machine_file import load_machine
-
-    try:
-        return any(load_machine(path).model_dump(exclude_defaults=True, exclude={"title"}).values())
-    except InputError:
-        return False

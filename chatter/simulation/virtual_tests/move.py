@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from chatter.compile.linearised_friction import rigid_motion
 from chatter.description.brief_repr import BriefRepr
 from chatter.description.errors import InputError
+from chatter.description.formatting import to_digits
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.io.presentation import presentation
@@ -119,6 +120,19 @@ class MoveResult(BriefRepr, NotebookResult):
                     f"{self.effort_unit(column).replace('*', ' ')}"
                 )
         return told
+
+    def sentences(self) -> list[str]:
+        """Largest contour error, errors and effort of every axis, and axes that do not follow."""
+        summary = self.summary()
+        contour = summary["contour_error_um"]
+        told = [] if contour is None else [f"largest contour error {to_digits(contour, 4)} um"]
+        for axis, largest in summary["axes"].items():
+            effort = f"{to_digits(largest['effort'], 4)} {largest['effort_unit'].replace('*', ' ')}"
+            told.append(
+                f"axis {axis}: tracking error at most {to_digits(largest['tracking_error_um'], 4)} "
+                f"um, effort at most {effort}"
+            )
+        return told + self.left_behind()
 
     def plot(self) -> Figure:
         """Picture of the move."""

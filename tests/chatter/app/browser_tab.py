@@ -205,16 +205,7 @@ class Tab:
         )
 
     def choose(self, label: str, option: str) -> None:
-        """Choose an option of the visible list of a label."""
-        field = self._field(label, "select")
-        self.value(
-            f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"
-            "one.value = [...one.options].find(o => o.textContent.trim() === wanted).value;"
-            "one.dispatchEvent(new Event('change', {bubbles: true})); })()"
-        )
-
-    def choose_also(self, label: str, option: str) -> None:
-        """Choose one more option of the visible list of several of a label."""
+        """Choose an option of the visible list of a label; of a list of several, one more."""
         field = self._field(label, "select")
         self.value(
             f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"

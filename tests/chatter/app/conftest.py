@@ -3,34 +3,42 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import gc
 import threading
 
 import pytest
 
 from chatter.app.workbench.server import WorkbenchServer
-from tests.chatter.app.browser_tab import browser, tab_of
+from tests.chatter.app.browser_tab import PATIENCE, browser, tab_of
+
+
+@contextlib.contextmanager
+def serving(folder):
+    """Serve a folder in a thread, until the block ends."""
+    begun: list[WorkbenchServer] = []
+    ready = threading.Event()
+
+    def serve():
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        begun.append(WorkbenchServer(folder))
+        ready.set()
+        begun[0].serve()
+
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    assert ready.wait(PATIENCE)
+    yield begun[0]
+    begun[0].end()
+    thread.join(PATIENCE)
 
 
 @pytest.fixture
 def served(tmp_path):
     folder = tmp_path / "work"
     folder.mkdir()
-    serving: list[WorkbenchServer] = []
-    ready = threading.Event()
-
-    def serve():
-        asyncio.set_event_loop(asyncio.new_event_loop())
-        serving.append(WorkbenchServer(folder))
-        ready.set()
-        serving[0].serve()
-
-    thread = threading.Thread(target=serve, daemon=True)
-    thread.start()
-    assert ready.wait(60.0)
-    yield folder, serving[0]
-    serving[0].end()
-    thread.join(60.0)
+    with serving(folder) as server:
+        yield folder, server
     gc.collect()  # what was not sent is left here, and not after the last test
 
 

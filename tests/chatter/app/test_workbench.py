@@ -19,9 +19,10 @@ from tornado.websocket import websocket_connect
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.page import Workbench
-from chatter.app.workbench.server import LARGEST_MESSAGE, WorkbenchServer
+from chatter.app.workbench.server import LARGEST_MESSAGE
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.table_files import as_csv
+from tests.chatter.app.conftest import serving
 from tests.places import EXAMPLES
 
 #: s; the first diagram may compile
@@ -55,6 +56,32 @@ def test_only_case_files_inside_the_folder_are_offered(folder):
     (folder / "link.toml").symlink_to(EXAMPLES / "two-degrees-of-freedom" / "case.toml")
     assert Session(folder).case_names() == ["case.toml"]
     (folder / "link.toml").unlink()
+
+
+def test_a_case_with_faults_is_offered_and_mended_on_the_page(tmp_path):
+    """It was left out of the list without a word."""
+    text = (EXAMPLES / "two-degrees-of-freedom" / "case.toml").read_text(encoding="utf-8")
+    (tmp_path / "typo.toml").write_text(
+        text.replace("[cut]", "[cut]\nspeeed = 3"), encoding="utf-8"
+    )
+    (tmp_path / "no-toml.toml").write_text(text + "\n[cut\n", encoding="utf-8")
+    (tmp_path / "picture.toml").write_bytes(b"\x89PNG\xff")
+    (tmp_path / "machine.toml").write_text("[body.bed]\nmas = 3\n", encoding="utf-8")
+    page = Workbench(tmp_path)
+    try:
+        assert page.choice.options == ["no-toml.toml", "typo.toml"]
+        page.choice.value = "typo.toml"
+        assert page.tabs.active == list(page.views).index("Case")
+        assert "speeed" in page.case.message.object
+        page.case.text.value = text
+        assert not page.session.problems
+        page.session.save()
+        assert chatter.load(tmp_path / "typo.toml").cut
+        page.machine.refresh()
+        assert page.machine.file.options == ["machine.toml"]
+        assert "body.bed.mas" in page.machine.work.message.object
+    finally:
+        page.end()
 
 
 def test_a_page_without_a_browser_changes_at_once_whatever_document_is_current(folder):
@@ -173,20 +200,8 @@ def test_cancel_ends_a_computation():
 
 @pytest.fixture(scope="module")
 def server(folder):
-    serving, ready = [], threading.Event()
-
-    def serve():
-        asyncio.set_event_loop(asyncio.new_event_loop())
-        serving.append(WorkbenchServer(folder))
-        ready.set()
-        serving[0].serve()
-
-    thread = threading.Thread(target=serve, daemon=True)
-    thread.start()
-    assert ready.wait(PATIENCE)
-    yield serving[0]
-    serving[0].end()
-    thread.join(PATIENCE)
+    with serving(folder) as found:
+        yield found
 
 
 def answer(server, path, method="GET", body=None):

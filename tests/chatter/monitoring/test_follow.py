@@ -55,9 +55,8 @@ def test_a_verdict_every_revolution_and_chatter_within_the_window():
     assert found[-1].chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
 
 
-@pytest.mark.parametrize("factor", [0.8, 1.2])
-@pytest.mark.parametrize("begin", [0.0, 9.0])
-def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(factor, begin):
+def observed_at(factor, begin):
+    """Verdicts on a record that begins at a time, with the speed stated wrong by a factor."""
     values = made(begin)[:, None]
     found = running(values[:, 0], factor * REVOLUTION)
     observed = []
@@ -67,6 +66,13 @@ def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(fa
         deadline = clock_time.monotonic() + 20.0
         while found.judges_together and clock_time.monotonic() < deadline:
             clock_time.sleep(0.005)
+    return observed
+
+
+@pytest.mark.parametrize("factor", [0.8, 1.2])
+@pytest.mark.parametrize("begin", [0.0, 9.0])
+def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(factor, begin):
+    observed = observed_at(factor, begin)
     last = observed[-1]
     assert last.speed_is_refuted
     assert last.verdict != "stable"
@@ -76,14 +82,7 @@ def test_a_wrong_speed_is_told_beside_the_verdicts_and_nothing_is_stable_then(fa
 @pytest.mark.parametrize("factor", [0.9, 0.94, 1.06, 1.1])
 @pytest.mark.parametrize(("begin", "verdict"), [(0.0, "chatter"), (9.0, "stable")])
 def test_a_speed_some_percent_off_is_read_off_the_lines(factor, begin, verdict):
-    values = made(begin)[:, None]
-    found = running(values[:, 0], factor * REVOLUTION)
-    observed = []
-    for part in np.array_split(values, 40):
-        observed += found.take(part)
-        deadline = clock_time.monotonic() + 20.0
-        while found.judges_together and clock_time.monotonic() < deadline:
-            clock_time.sleep(0.005)
+    observed = observed_at(factor, begin)
     assert not observed[0].speed_is_corrected
     last = observed[-1]
     assert last.speed_is_corrected

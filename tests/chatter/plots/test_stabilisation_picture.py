@@ -14,7 +14,7 @@ STIFFNESS, NATURAL, DAMPING = 8e6, 640.0, 0.03
 
 @pytest.mark.parametrize(
     ("quantity", "unit", "power", "factor"),
-    [("receptance", "um/N", 0, 1e6), ("accelerance", "m/s\u00b2/N", 2, 1.0)],
+    [("receptance", "um/N", 0, 1e6), ("accelerance", "m/s^2/N", 2, 1.0)],
 )
 def test_the_axis_of_the_frfs_behind_has_its_quantity_and_unit(quantity, unit, power, factor):
     ratio = FREQUENCY / NATURAL
