@@ -59,7 +59,7 @@ class StickOutLobes:
     best_speed: NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Assembly(NotebookResult):
     """Tool point of an assembly over the stick-out.
 
@@ -87,6 +87,11 @@ class Assembly(NotebookResult):
     fits: tuple[ModalFit, ...]
     lobes: StickOutLobes | None
     notes: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        name = self.file.title or self.file.name
+        return f"<Assembly {name!r}, {len(self.stick_out)} stick-outs>"
 
     @property
     def best(self) -> int:

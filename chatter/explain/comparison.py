@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Comparison(NotebookResult):
     """Errors of a case by run and channel.
 
@@ -42,6 +42,10 @@ class Comparison(NotebookResult):
     errors: Sequence[ChannelError]
     signature: Signature | None
     checks: tuple[SignalFinding, ...] = ()
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<Comparison {self.measurement.title!r}, {len(self.errors)} channels of runs>"
 
     def summary(self) -> dict[str, Any]:
         """Content of compare.json."""

@@ -51,7 +51,7 @@ EXPLAINED, NOTHING_MISSING, UNEXPLAINED = "explained", "nothing-missing", "unexp
 EXPLAINED_IN_PART = "explained-in-part"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Explanation(NotebookResult):
     """Verdict on a measurement.
 
@@ -76,6 +76,10 @@ class Explanation(NotebookResult):
     predictions: Predictions
     checks: tuple[SignalFinding, ...] = ()
     empirical: Learnt | None = None
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<Explanation {self.measurement.title!r}, {self.verdict}>"
 
     @property
     def adds_effects(self) -> bool:
@@ -336,7 +340,7 @@ class Explanation(NotebookResult):
         return [*written, residuals, case]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Contradiction(NotebookResult):
     """Verdict on data that would mislead any search for effects.
 
@@ -348,6 +352,10 @@ class Contradiction(NotebookResult):
 
     checked: Checked
     verdict: str = field(default=UNEXPLAINED, init=False)
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<Contradiction {self.measurement.title!r}, {self.verdict}>"
 
     @property
     def measurement(self) -> Measurement:

@@ -16,6 +16,8 @@ _PIXELS = 96.0  # of a page, per inch
 #: room of axes and title around a panel, pixels
 _BESIDE, _BELOW = 90, 90
 _DASHES = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
+#: a line of more points than four for each of so many parts is thinned: pages stay below some MB
+_PARTS = 1000
 _SHOWN = (LineCollection, PathCollection, PolyCollection)
 
 
@@ -86,9 +88,23 @@ def _draw_line(drawn: Any, axes: Axes, line: Any) -> None:
     colour, named = to_hex(line.get_color()), _named(line)
     dash = _DASHES.get(line.get_linestyle())
     if dash is not None:
-        drawn.line(x, y, color=colour, line_dash=dash, line_width=line.get_linewidth(), **named)
+        thin = _thinned(x, y)
+        drawn.line(*thin, color=colour, line_dash=dash, line_width=line.get_linewidth(), **named)
     if line.get_marker() not in ("", "None", None):
         drawn.scatter(x, y, color=colour, size=line.get_markersize(), **named)
+
+
+def _thinned(x: Any, y: Any) -> tuple[Any, Any]:
+    """Points of a line with the extremes of each of its parts; gaps are kept with all points."""
+    if len(x) <= 4 * _PARTS or not np.isfinite(x + y).all():
+        return x, y
+    parts = np.array_split(np.arange(len(x)), _PARTS)
+    kept = {0, len(x) - 1}
+    for part in parts:
+        for values in (x[part], y[part]):
+            kept |= {int(part[values.argmin()]), int(part[values.argmax()])}
+    rows = np.array(sorted(kept))
+    return x[rows], y[rows]
 
 
 def _draw_area(drawn: Any, axes: Axes, area: Any) -> None:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ModalTest(NotebookResult):
     """Modal parameters of a measured structure.
 
@@ -54,6 +54,10 @@ class ModalTest(NotebookResult):
     side: Side
     hammer: HammerTest | None = None
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<ModalTest {self.title!r}, {len(self.fit.identified)} modes>"
 
     def summary(self) -> dict:
         """Return the content of summary.json."""

@@ -100,6 +100,23 @@ def test_lines_stand_where_they_were_drawn():
     assert upright["y"] == pytest.approx([0.0, 10.0])
 
 
+def test_a_long_line_keeps_its_extremes_in_a_tenth_of_its_points():
+    """A move of 50 000 steps made a page of 10 MB."""
+    time = np.linspace(0.0, 1.0, 50_000)
+    values = np.sin(40.0 * np.pi * time)
+    values[12_345] = 7.0
+    figure = Figure()
+    figure.subplots().plot(time, values, label="force")
+    (line,) = [one for one in drawn_data(interactive_picture(figure)) if len(one["y"]) > 100]
+    assert len(line["y"]) <= 4002
+    assert max(line["y"]) == 7.0
+    assert line["x"][0] == 0.0
+    assert line["x"][-1] == 1.0
+    assert np.interp(line["x"], time, values) == pytest.approx(line["y"])
+    # every half wave is there: no step along the line is longer than a part of it
+    assert np.diff(line["x"]).max() < 2.5e-3
+
+
 def test_an_image_has_its_first_row_where_it_was_drawn():
     figure = Figure()
     rows = np.array([[[255, 0, 0, 255]], [[0, 0, 255, 255]]], dtype=np.uint8)
@@ -116,22 +133,31 @@ def test_a_map_stays_a_picture():
 
 
 def classes_that_draw():
-    """Classes of the package with a method `plot`, and what they are made from."""
+    """Classes of the package with a method `plot`: their methods, and what they are made from."""
     for path in sorted((ROOT / "chatter").rglob("*.py")):
         for one in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if not isinstance(one, ast.ClassDef):
                 continue
-            if "plot" in [
-                method.name for method in one.body if isinstance(method, ast.FunctionDef)
-            ]:
-                yield one.name, {base.id for base in one.bases if isinstance(base, ast.Name)}
+            methods = {each.name for each in one.body if isinstance(each, ast.FunctionDef)}
+            if "plot" in methods:
+                bases = {base.id for base in one.bases if isinstance(base, ast.Name)}
+                yield one.name, methods, bases
 
 
 def test_every_result_that_draws_itself_shows_itself():
-    found = dict(classes_that_draw())
+    found = {name: bases for name, _, bases in classes_that_draw()}
     assert len(found) > 12
     missing = [name for name, bases in found.items() if not bases & {"NotebookResult", "Protocol"}]
     assert [one for one in missing if one != "NotebookResult"] == []
+
+
+def test_every_result_has_a_short_repr():
+    """A notebook holds it beside the page: an explanation had 800 000 characters."""
+    long = [
+        name for name, methods, bases in classes_that_draw()
+        if "NotebookResult" in bases and "__repr__" not in methods and "BriefRepr" not in bases
+    ]  # fmt: skip
+    assert long == []
 
 
 def test_a_diagram_says_its_verdict_its_limit_and_its_pockets():
