@@ -111,6 +111,7 @@ def machine_along_axes(
     )
     if count == 1:
         return None
+    travelled = {axis: _without_slivers(*ends) for axis, ends in travelled.items()}
     kept = file.once("along the axes", dict)
     key = repr((travelled, count, start, state))
     if key not in kept:
@@ -128,6 +129,16 @@ def machine_along_axes(
         for machine, offset in zip(machines, _offsets(found.grid), strict=True)
     )
     return MachinesAlong(tuple(found.grid), tuple(found.grid.values()), machines, rows, found.parts)
+
+
+def _without_slivers(low: float, high: float) -> tuple[float, float]:
+    """Ends of a travel, m, of which one that is next to the start is there.
+
+    A program may return to the start but for rounding, or overshoot it.
+    """
+    if high - low < _LEAST_TRAVEL:
+        return low, high
+    return low if -low > _LEAST_TRAVEL else 0.0, high if high > _LEAST_TRAVEL else 0.0
 
 
 class _Travelling(NamedTuple):

@@ -14,6 +14,8 @@ from dynamics.trajectory.spatial_path import SpatialArc
 _OFF_SHARE, _OFF = 1e-3, 5e-6
 #: of a radius by which half a chord may exceed it
 _SHORT = 1e-6
+#: distance below which both ends are one, m: what rounding leaves of a sum of increments
+_SAME_END = 1e-9
 
 
 @dataclass(frozen=True)
@@ -27,8 +29,9 @@ class ArcEnds:
 
     @property
     def chord(self) -> Array:
-        """From start to end in the plane, (2,), m."""
-        return (self.end - self.start)[list(self.plane)]
+        """From start to end in the plane, (2,), m; 0 where they are one."""
+        chord = (self.end - self.start)[list(self.plane)]
+        return chord if np.linalg.norm(chord) > _SAME_END else np.zeros(2)
 
 
 def arc_by_radius(ends: ArcEnds, radius: float) -> SpatialArc:

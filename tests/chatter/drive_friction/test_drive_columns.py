@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from chatter.description.errors import InputError
+from chatter.drive_friction.drive_columns import split_drive_heading
 from chatter.drive_friction.drive_records import DriveSettings, drive_records
 
 #: of the recorded axis
@@ -45,6 +46,21 @@ def one(path, **settings):
             "time [ms],Servo motor speed [r/min],Torque [%]",
             (1e3 * TIME, 60.0 * VELOCITY / LEAD, 100.0 * TORQUE / RATED),
             {"lead": LEAD, "rated_torque": RATED},
+        ),
+        (
+            "t/ms,s actual X/mm,v nominal X/(mm/min),v actual X/(mm/min),I actual X/A",
+            (1e3 * TIME, 1e3 * POSITION, 0.0 * FORCE, 6e4 * VELOCITY, TORQUE / TORQUE_CONSTANT),
+            {"lead": LEAD, "torque_constant": TORQUE_CONSTANT},
+        ),
+        (
+            "tempo (s),posizione X (mm),velocità (mm/s),forza (N)",
+            (TIME, 1e3 * POSITION, 1e3 * VELOCITY, FORCE),
+            {},
+        ),
+        (
+            "Temps/ms,position/mm,vitesse de consigne/(mm/s),vitesse/(mm/s),couple/Nm",
+            (1e3 * TIME, 1e3 * POSITION, 0.0 * FORCE, 1e3 * VELOCITY, TORQUE),
+            {"lead": LEAD},
         ),
         (
             "time [s],s act. Y [mm],load [A]",
@@ -112,3 +128,19 @@ def test_records_of_different_motions_are_refused(tmp_path):
     motor = write(tmp_path / "b.csv", "time [s],speed [rad/s],torque [N*m]", TIME, VELOCITY, FORCE)
     with pytest.raises(InputError, match=r"b.csv: is about the motor, .*a.csv is along the slide"):
         drive_records([slide, motor])
+
+
+@pytest.mark.parametrize(
+    ("heading", "name", "unit"),
+    [
+        ("t/ms", "t", "ms"),
+        ("v/(mm/min)", "v", "mm/min"),
+        ("motor speed/rpm", "motor speed", "rpm"),
+        ("velocity mm/min", "velocity mm/min", ""),
+        ("speed r/min", "speed r/min", ""),
+        ("m/s", "m/s", ""),
+        ("force/displacement", "force/displacement", ""),
+    ],
+)
+def test_unit_behind_a_slash(heading, name, unit):
+    assert split_drive_heading(heading) == (name, unit)

@@ -59,6 +59,18 @@ def test_incremental_and_absolute(tmp_path):
     assert lengths(found)[3] == pytest.approx(5.0 * math.pi)
 
 
+@pytest.mark.parametrize("sense", ["G2", "G3"])
+@pytest.mark.parametrize("before", ["X-10 Y5.5", "X-0.1 Y0.2 Z0.3", "X1.1 Y2.2"])
+def test_full_circle_behind_increments(tmp_path, before, sense):
+    """An end that is the start but for the rounding of sums is a full circle; it was no motion."""
+    there = [40.0 + 3 * float(before.split()[0][1:]), 30.0 + 3 * float(before.split()[1][1:])]
+    text = "G0 X40 Y30\nG91 F600\n" + 3 * f"G1 {before}\n"
+    text += f"G90 {sense} X{there[0]:.4f} Y{there[1]:.4f} I-5 J0\n"
+    found = program(tmp_path, text)
+    assert lengths(found)[-1] == pytest.approx(10.0 * math.pi)
+    assert ends(found)[-1][:2] == pytest.approx(there)
+
+
 @pytest.mark.parametrize(
     ("block", "length", "middle"),
     [

@@ -255,6 +255,14 @@ def test_start_within_the_travel(screw_machine):
     )
 
 
+@pytest.mark.parametrize("beyond", [1e-19, 3e-5])
+def test_a_little_beyond_the_start_is_no_position(screw_machine, beyond):
+    """An arc that closes but for rounding was refused; a sliver of a cell would be followed."""
+    positions = grid_of(screw_machine, 5, -beyond, 0.3).positions[0]
+    assert positions == pytest.approx(np.linspace(0.0, 0.3, 5))
+    assert positions[0] == 0.0
+
+
 def test_number_of_positions_by_the_travel(screw_machine):
     travels = (0.05, 0.07, 0.1, 0.6)
     counts = [len(grid_of(screw_machine, None, 0.0, high).positions[0]) for high in travels]
