@@ -15,6 +15,10 @@ _TOOLS = "pan,box_zoom,wheel_zoom,reset,save"
 _PIXELS = 96.0  # of a page, per inch
 #: room of axes and title around a panel, pixels
 _BESIDE, _BELOW = 90, 90
+#: the script looks for BokehJS every 10 ms and gives up after a second; a busy browser takes longer
+_GIVES_UP = "attempts > 100"
+#: entries of a legend side by side
+_LEGEND_COLUMNS = 3
 _DASHES = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
 #: a line of more points than four for each of so many parts is thinned: pages stay below some MB
 _PARTS = 1000
@@ -36,7 +40,7 @@ def interactive_picture(figure: Figure) -> str | None:
     if not panels:
         return None
     script, place = components(column(panels))
-    return place + script
+    return place + script.replace(_GIVES_UP, "attempts > 3000")
 
 
 def _is_beyond(axes: Axes) -> bool:
@@ -56,6 +60,10 @@ def _panel(axes: Axes, figure: Figure) -> Any:
         title=axes.get_title() or axes.get_title(loc="left"),
         x_axis_label=axes.get_xlabel(), y_axis_label=axes.get_ylabel(),
     )  # fmt: skip
+    drawn.xaxis.visible, drawn.yaxis.visible = (
+        len(axes.get_xticks()) > 0,
+        len(axes.get_yticks()) > 0,
+    )
     for image in axes.images:
         _draw_image(drawn, image)
     for area in (*axes.collections, *axes.patches):
@@ -67,6 +75,8 @@ def _panel(axes: Axes, figure: Figure) -> Any:
     _hover(drawn, axes)
     for legend in list(drawn.legend):
         legend.update(click_policy="hide", label_text_font_size="8pt", orientation="horizontal")
+        if len(legend.items) > _LEGEND_COLUMNS:
+            legend.ncols = _LEGEND_COLUMNS
         drawn.center.remove(legend)  # it would cover curves
         drawn.add_layout(legend, "above")
     return drawn

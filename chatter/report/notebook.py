@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from chatter.plots.interactive_picture import interactive_picture
+from chatter.plots.notebook_scripts import load_notebook_scripts
 from chatter.plots.style import png_of
 
 #: characters of a repr that a notebook shows
@@ -62,8 +63,5 @@ def _loads_bokeh() -> bool:
     kernel = getattr(shell.get_ipython() if shell else None, "kernel", None)
     if kernel is None or find_spec("panel") is None:
         return False
-    import panel
-
-    if not panel.extension._loaded:
-        panel.extension(inline=True)
+    load_notebook_scripts()
     return True

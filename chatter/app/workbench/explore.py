@@ -36,9 +36,9 @@ def explore(case: Case, method: str | None = None) -> Any:
     import panel as pn
 
     from chatter.app.workbench.stability_view import StabilityView
+    from chatter.plots.notebook_scripts import load_notebook_scripts
 
-    # a workshop may have no network: scripts and styles come with the cell
-    pn.extension(inline=True)
+    load_notebook_scripts()
     shown: list[Any] = []
 
     def show(change: Callable[[], None]) -> None:

@@ -314,8 +314,14 @@ def test_a_notebook_shows_the_diagram_of_a_case():
     assert shown.select(pn.pane.Bokeh)
 
 
-def test_a_notebook_asks_nothing_of_the_network(monkeypatch):
+@pytest.mark.parametrize(("loaded", "wanted"), [(False, [{"inline": True}]), (True, [])])
+def test_a_notebook_asks_nothing_of_the_network_and_loads_once(monkeypatch, loaded, wanted):
     asked = []
-    monkeypatch.setattr(pn, "extension", lambda *names, **given: asked.append(given))
+
+    def extension(**given):
+        asked.append(given)
+
+    extension._loaded = loaded
+    monkeypatch.setattr(pn, "extension", extension)
     chatter.explore(EXAMPLES / "two-degrees-of-freedom" / "case.toml", "zero-order")
-    assert asked == [{"inline": True}]
+    assert asked == wanted

@@ -117,6 +117,14 @@ def test_a_long_line_keeps_its_extremes_in_a_tenth_of_its_points():
     assert np.diff(line["x"]).max() < 2.5e-3
 
 
+def test_the_script_waits_for_bokeh_longer_than_a_busy_browser_takes_to_load_it():
+    """In JupyterLab the first picture stayed empty where BokehJS came a second late."""
+    figure = Figure()
+    figure.subplots().plot([0.0, 1.0], [0.0, 1.0])
+    (attempts,) = re.findall(r"attempts > (\d+)", interactive_picture(figure))
+    assert int(attempts) * 0.01 >= 20.0
+
+
 def test_an_image_has_its_first_row_where_it_was_drawn():
     figure = Figure()
     rows = np.array([[[255, 0, 0, 255]], [[0, 0, 255, 255]]], dtype=np.uint8)
