@@ -152,7 +152,7 @@ class Milling(Kind):
     def predicted_as(self, run: Run) -> str:
         """Order of the filter of a settled record."""
         record = run.record
-        return f"filter {record.recorded.order}" if isinstance(record, SteadyRecord) else ""
+        return f"filter {record.filter_order}" if isinstance(record, SteadyRecord) else ""
 
     def known_noise(self, run: Run) -> Mapping[str, float]:
         """Standard deviation of channels whose noise the records tell."""

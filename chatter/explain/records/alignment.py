@@ -24,8 +24,9 @@ Complex = NDArray[np.complex128]
 USUAL_FILTER, _LOWEST_FILTER = 2.5, 6.0
 #: order of the filter until the records tell another, and orders that are built
 USUAL_ORDER, ORDERS = 4, (2, 4, 6, 8)
-#: angles of the scan, steps of the search, and changes below which it ends
-_SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-8
+#: angles of the scan, steps of the search, and change of the prediction, over the record, below
+#: which it ends
+_SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-7
 #: highest order that is predicted, over the highest in the band: a usual filter leaves a hundredth
 #: of what is beyond
 _FOLDED = 3.0
@@ -33,6 +34,8 @@ _FOLDED = 3.0
 _POINTS_AN_ORDER = 24
 #: widest steps, as a part of a pitch, and of the filter
 _WIDEST_TURN, _WIDEST_FILTER = 0.1, 0.5
+#: factors of the width of the steps after one that failed, of its own, and after one that did not
+_NARROWER, _WIDER = 0.25, 2.0
 #: orders of which the waves are made at once
 _BLOCK = 32
 #: of the normal equations, so that what the record does not show stays where it is
@@ -51,7 +54,6 @@ class Recorded:
     pitch: float  # smallest angle by which a tool may be turned unseen, rad
     angle: Array | None = None  # (n,) of the spindle, rad, where it is known
     expected: float | None = None  # angle in the middle of the record, where a tacho tells it
-    order: int = USUAL_ORDER  # of the anti-alias filter, a Butterworth filter
 
     @property
     def sampling(self) -> float:
@@ -130,14 +132,15 @@ class Recorded:
         count = max(float(self.usable.sum()), 1.0)
         return 2.0 / count * (flat @ waves) / self.deviation[:, None]
 
-    @property
+    @cached_property
     def frequency(self) -> Array:
         """Frequency (M,) of the harmonics, Hz."""
         return self.orders * self.speed / (2.0 * math.pi)
 
-    def filtered(self, corner_ratio: float) -> Complex:
-        """Anti-alias filter (M,) at the harmonics."""
-        return low_pass(self.frequency, corner_ratio, self.sampling, self.order)
+    @cached_property
+    def size(self) -> float:
+        """Norm of the harmonics of the channels."""
+        return float(np.linalg.norm(self.content))
 
     def drift(self, values: Array) -> Array:
         """Offset and drift (c, n) of values (c, n), from the usable samples."""
@@ -172,31 +175,40 @@ def _damped(order: int) -> Array:
     return 2.0 * np.sin((2.0 * np.arange(order // 2) + 1.0) * math.pi / (2.0 * order))
 
 
+class LowPass(NamedTuple):
+    """Butterworth filter at frequencies."""
+
+    gain: Complex
+    slope: Complex  # of the logarithm of the gain over the sampling over the corner frequency
+    bend: Complex  # change of the slope
+
+
 def low_pass(
     frequency: Array, corner_ratio: float, sampling: float, order: int = USUAL_ORDER
-) -> Complex:
+) -> LowPass:
     """Butterworth filter at frequencies, Hz, by the sampling over the corner frequency."""
-    s = 1j * frequency * corner_ratio / sampling
-    found = np.ones(s.shape, dtype=np.complex128)
-    for damped in _damped(order):
-        found *= s * s + damped * s + 1.0
-    return 1.0 / found
-
-
-def _slope_of_low_pass(
-    frequency: Array, corner_ratio: float, sampling: float, order: int
-) -> Complex:
-    """Change of the logarithm of the low pass with the sampling over the corner frequency."""
     rate = 1j * frequency / sampling
     s = rate * corner_ratio
-    return -rate * sum((2.0 * s + one) / (s * s + one * s + 1.0) for one in _damped(order))
+    squared = s * s + 1.0
+    product = np.ones(s.shape, dtype=np.complex128)
+    slope, bend = np.zeros((2, *s.shape), dtype=np.complex128)
+    for damped in _damped(order):
+        pole_pair = squared + damped * s
+        one = (2.0 * s + damped) / pole_pair
+        product *= pole_pair
+        slope += one
+        bend += 2.0 / pole_pair - one * one
+    return LowPass(1.0 / product, -rate * slope, -rate * rate * bend)
 
 
-def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
-    """Lay harmonics (c, M) of channels over the angle, from the first order on, beside a record."""
-    found = _found(harmonics, recorded)
-    filtered = recorded.filtered(found.ratio)
-    predicted = recorded.at(harmonics * filtered, found.start)
+def aligned(harmonics: Complex, recorded: Recorded, filter_order: int = USUAL_ORDER) -> Alignment:
+    """Lay harmonics (c, M) of channels over the angle, from the first order on, beside a record.
+
+    The record is behind an anti-alias filter, a Butterworth filter, of an even order.
+    """
+    search = _Search(harmonics / recorded.deviation[:, None], recorded, filter_order)
+    found = search.found()
+    predicted = recorded.at(harmonics * search.filter_at(found.ratio).gain, found.start)
     predicted += recorded.drift(recorded.signals - predicted)
     corner = recorded.sampling / found.ratio if found.ratio > 0.0 else math.inf
     angle = recorded.turned + found.start
@@ -204,60 +216,98 @@ def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
 
 
 class _Laid(NamedTuple):
-    """Harmonics laid beside a record."""
+    """Harmonics laid beside a record, and what Gauss-Newton steps from there hang on."""
 
-    cost: float  # sum of squares of what differs
     start: float  # angle, rad
     ratio: float  # sampling over corner frequency
+    cost: float  # sum of squares of what differs
+    normal: Array  # (2, 2), of the angle and the ratio
+    gradient: Array  # (2,), with its sign turned
+    curved: Array  # (2, 2), the same with what curves the harmonics
 
 
-def _found(harmonics: Complex, recorded: Recorded) -> _Laid:
-    """Start angle and filter at which harmonics (c, M) fit best.
+class _Search:
+    """Start angle and filter at which scaled harmonics (c, M) fit a record best.
 
-    By Gauss-Newton steps, shorter ones where the fit gets no better. A filter delays, as the angle
-    does: the angle is counted as delayed, so that one hardly moves the other.
+    By Newton's steps, of Gauss and Newton where the curvature is no minimum's, and narrower ones
+    where the fit gets no better. A filter delays, as the angle does: the angle is counted as
+    delayed, so that one hardly moves the other.
     """
-    scaled = harmonics / recorded.deviation[:, None]
-    start, delay = 0.0, 0.0
-    if recorded.angle is None:
-        start = _scanned(scaled * recorded.filtered(USUAL_FILTER), recorded)
-        delay = float(_damped(recorded.order).sum()) * recorded.speed
-        delay /= 2.0 * math.pi * recorded.sampling
-    best, step = _step_from(scaled, recorded, _Laid(0.0, start, USUAL_FILTER), delay)
-    for _ in range(_MOST_STEPS):
-        ratio = min(max(best.ratio + step[1], 0.0), _LOWEST_FILTER)
-        turned = step[0] + delay * (ratio - best.ratio)
-        if max(abs(turned), abs(ratio - best.ratio)) < _CONVERGED:
-            break
-        there = _Laid(0.0, best.start + turned, ratio)
-        trial, further = _step_from(scaled, recorded, there, delay)
-        if trial.cost > best.cost:
-            step = 0.5 * step  # too far: half the way
-        else:
-            best, step = trial, further
-    return best
 
+    def __init__(self, scaled: Complex, recorded: Recorded, filter_order: int) -> None:
+        self._scaled, self._recorded, self._order = scaled, recorded, filter_order
+        self._turned = 1j * recorded.orders
+        self._delay = 0.0
+        if recorded.angle is None:
+            damped = float(_damped(filter_order).sum())
+            self._delay = damped * recorded.speed / (2.0 * math.pi * recorded.sampling)
+        self._widest = np.array([_WIDEST_TURN * recorded.pitch, _WIDEST_FILTER])
 
-def _step_from(scaled: Complex, recorded: Recorded, at: _Laid, delay: float) -> tuple[_Laid, Array]:
-    """Cost of scaled harmonics (c, M), and the Gauss-Newton step in angle and filter from there."""
-    turn = np.exp(1j * recorded.orders * at.start)
-    now = scaled * recorded.filtered(at.ratio) * turn
-    turned = 1j * recorded.orders
-    by_filter = _slope_of_low_pass(recorded.frequency, at.ratio, recorded.sampling, recorded.order)
-    rows = np.concatenate([now, now * turned, now * (by_filter + delay * turned)])
-    shown, *slopes = np.split(recorded.folded(rows), 3)
-    matrix = np.array([one.ravel() for one in slopes])
-    matrix[0] *= recorded.angle is None
-    residual = (recorded.content - shown).ravel()
-    normal = np.real(np.conj(matrix) @ matrix.T)
-    normal += _DAMPING * (np.trace(normal) + 1e-300) * np.eye(2)
-    step = np.linalg.solve(normal, np.real(np.conj(matrix) @ residual))
-    limits = np.array([_WIDEST_TURN * recorded.pitch, _WIDEST_FILTER])
-    return at._replace(cost=float(np.sum(np.abs(residual) ** 2))), np.clip(step, -limits, limits)
+    def filter_at(self, ratio: float) -> LowPass:
+        """Anti-alias filter (M,) at the harmonics."""
+        return low_pass(self._recorded.frequency, ratio, self._recorded.sampling, self._order)
 
+    def found(self) -> _Laid:
+        """Return the best that steps from the best angle of the scan and the usual filter reach."""
+        best, width = self._at(self._scanned(), USUAL_FILTER), 1.0
+        for _ in range(_MOST_STEPS):
+            step = self._step(best, width * self._widest)
+            if math.sqrt(step @ best.normal @ step) <= _CONVERGED * self._recorded.size:
+                break
+            turned = step[0] + self._delay * step[1]
+            trial = self._at(best.start + turned, best.ratio + step[1])
+            if trial.cost > best.cost:
+                width = _NARROWER * float(np.max(np.abs(step) / self._widest))
+            else:
+                best, width = trial, min(_WIDER * width, 1.0)
+        return best
 
-def _scanned(scaled: Complex, recorded: Recorded) -> float:
-    """Angle in the middle of the record at which scaled harmonics (c, M) fit best."""
-    product = np.sum(np.conj(scaled[:, : recorded.in_band]) * recorded.content, axis=0)
-    angles, waves = recorded.scan
-    return float(angles[int(np.argmax(np.real(waves @ product)))])
+    def _at(self, start: float, ratio: float) -> _Laid:
+        recorded, low = self._recorded, self.filter_at(ratio)
+        now = self._scaled * (low.gain * np.exp(self._turned * start))
+        of_ratio = low.slope + self._delay * self._turned
+        rows = np.concatenate([now, now * self._turned, now * of_ratio])
+        shown, *slopes = np.split(recorded.folded(rows), 3)
+        matrix = np.array([one.ravel() for one in slopes])
+        matrix[0] *= recorded.angle is None
+        residual = recorded.content - shown
+        normal = np.real(np.conj(matrix) @ matrix.T)
+        normal += _DAMPING * (np.trace(normal) + 1e-300) * np.eye(2)
+        gradient = np.real(np.conj(matrix) @ residual.ravel())
+        curved = normal - self._bent(now, residual, of_ratio, low.bend)
+        return _Laid(start, ratio, float(np.sum(np.abs(residual) ** 2)), normal, gradient, curved)
+
+    def _bent(self, now: Complex, residual: Complex, of_ratio: Complex, bend: Complex) -> Array:
+        """Second changes (2, 2) of harmonics with angle and ratio along the residual.
+
+        Of those in the band: of the others they are small, and the steps end where they would.
+        """
+        band = residual.shape[1]
+        along = np.sum(np.conj(residual) * now[:, :band], axis=0)
+        turned, of_ratio, bend = self._turned[:band], of_ratio[:band], bend[:band]
+        of_both = np.real((turned * of_ratio) @ along)
+        of_angle, of_filter = np.real((turned**2) @ along), np.real((of_ratio**2 + bend) @ along)
+        if self._recorded.angle is not None:
+            of_angle = of_both = 0.0
+        return np.array([[of_angle, of_both], [of_both, of_filter]])
+
+    @staticmethod
+    def _step(at: _Laid, widest: Array) -> Array:
+        """Step in angle and ratio, no wider than some: the angle by what the ratio is held to."""
+        lowest, highest = max(-at.ratio, -widest[1]), min(_LOWEST_FILTER - at.ratio, widest[1])
+        is_minimum = at.curved[0, 0] > 0.0 and np.linalg.det(at.curved) > 0.0
+        curved = at.curved if is_minimum else at.normal
+        ratio = np.clip(np.linalg.solve(curved, at.gradient)[1], lowest, highest)
+        turn = (at.gradient[0] - curved[0, 1] * ratio) / curved[0, 0]
+        return np.array([np.clip(turn, -widest[0], widest[0]), ratio])
+
+    def _scanned(self) -> float:
+        """Angle in the middle of the record at which the harmonics fit best."""
+        recorded = self._recorded
+        if recorded.angle is not None:
+            return 0.0
+        band = slice(recorded.in_band)
+        filtered = self._scaled[:, band] * self.filter_at(USUAL_FILTER).gain[band]
+        product = np.sum(np.conj(filtered) * recorded.content, axis=0)
+        angles, waves = recorded.scan
+        return float(angles[int(np.argmax(np.real(waves @ product)))])

@@ -20,8 +20,9 @@ def with_filter_by(measurement: Measurement, case: Case) -> Measurement:
     if not steady:
         return measurement
     runs = list(steady.values())
-    now = runs[0].record.recorded.order
-    misfit = {order: _misfit(runs, case, order) for order in ORDERS}
+    now = runs[0].record.filter_order
+    of_runs = [run.record.misfits(run.of(case), ORDERS) for run in runs]
+    misfit = {order: sum(one[order] for one in of_runs) for order in ORDERS}
     best = min(misfit, key=lambda order: misfit[order])
     if misfit[best] > (1.0 - _LEAST_GAIN) * misfit[now]:
         return measurement
@@ -36,8 +37,3 @@ def with_filter_by(measurement: Measurement, case: Case) -> Measurement:
 
 def _is_steady(run: Run) -> bool:
     return isinstance(run.record, SteadyRecord)
-
-
-def _misfit(runs: list[Run], case: Case, order: int) -> float:
-    """Sum of squares of what differs between runs and their predictions."""
-    return sum(run.record.with_filter_of(order).aligned(run.of(case)).misfit for run in runs)

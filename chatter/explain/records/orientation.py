@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.records.alignment import USUAL_FILTER, Recorded
+from chatter.explain.records.alignment import USUAL_FILTER, Recorded, low_pass
 from chatter.explain.records.case_axes import Component
 from chatter.explain.records.description import Channel
 from chatter.explain.records.steady_cut import SteadyCut
@@ -108,7 +108,8 @@ def _turned(names: Sequence[str]) -> list[dict[str, Array]]:
 
 def _content(channels: Mapping[str, Channel], recorded: Recorded, cut: SteadyCut) -> _Content:
     orders = recorded.orders[: recorded.in_band]
-    filtered = recorded.filtered(USUAL_FILTER)[: orders.size]
+    frequency = recorded.frequency[: orders.size]
+    filtered = low_pass(frequency, USUAL_FILTER, recorded.sampling).gain
     predicted = np.array(
         [
             [

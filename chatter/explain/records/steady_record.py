@@ -1,14 +1,14 @@
 """What a run needs to be predicted in the settled part of its record."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.explain.records.alignment import Alignment, Recorded, aligned
+from chatter.explain.records.alignment import USUAL_ORDER, Alignment, Recorded, aligned
 from chatter.explain.records.case_axes import Component
 from chatter.explain.records.slow_channels import POWER
 from chatter.explain.records.steady_cut import SteadyCut, steady_cut
@@ -25,6 +25,7 @@ class SteadyRecord:
     revolutions: int  # simulated from rest until the cut is settled
     entered_by: str = ""  # stages of the record in words
     has_power: bool = False  # whether the power of the spindle is predicted
+    filter_order: int = USUAL_ORDER  # of the anti-alias filter
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -38,7 +39,15 @@ class SteadyRecord:
 
     def with_filter_of(self, order: int) -> "SteadyRecord":
         """Same record behind an anti-alias filter of another order."""
-        return replace(self, recorded=replace(self.recorded, order=order))
+        return replace(self, filter_order=order)
+
+    def misfits(self, case: Case, orders: Sequence[int]) -> dict[int, float]:
+        """Sum of squares of what differs, by a case with the overrides of the run.
+
+        By order of the anti-alias filter.
+        """
+        cut = steady_cut(case, self.revolutions)
+        return {one: self.with_filter_of(one)._laid_beside(cut).misfit for one in orders}
 
     def aligned(self, case: Case) -> Alignment:
         """Prediction of a case with the overrides of the run, laid beside the record."""
@@ -47,7 +56,7 @@ class SteadyRecord:
     def _laid_beside(self, cut: SteadyCut) -> Alignment:
         orders = self.recorded.orders
         harmonics = [cut.harmonics(one, orders) for one in self.components.values()]
-        return aligned(np.array(harmonics), self.recorded)
+        return aligned(np.array(harmonics), self.recorded, self.filter_order)
 
     def predicted(self, case: Case) -> dict[str, Array]:
         """Signals at the samples by a case with the overrides of the run."""

@@ -47,7 +47,7 @@ def test_a_model_that_lacks_something_is_laid_as_well_as_any_angle_and_filter_wo
 
     def left(start, corner):
         shown = recorded.folded(
-            known * low_pass(recorded.frequency, sampling / corner, sampling)
+            known * low_pass(recorded.frequency, sampling / corner, sampling).gain
             * np.exp(1j * recorded.orders * start)
         )  # fmt: skip
         return float(np.sum(np.abs(recorded.content * 1e-3 - shown) ** 2))
@@ -88,7 +88,12 @@ def test_low_passes_of_any_order_are_those_of_butterworth(order):
     frequency = np.linspace(10.0, 9e3, 50)
     b, a = scipy.signal.butter(order, TURN * 3600.0, analog=True)
     expected = scipy.signal.freqs(b, a, TURN * frequency)[1]
-    assert low_pass(frequency, 1e4 / 3600.0, 1e4, order) == pytest.approx(expected, rel=1e-9)
+    ratio, change = 1e4 / 3600.0, 1e-6
+    assert low_pass(frequency, ratio, 1e4, order).gain == pytest.approx(expected, rel=1e-9)
+    low, high = (low_pass(frequency, ratio + one, 1e4, order) for one in (-change, change))
+    here = low_pass(frequency, ratio, 1e4, order)
+    assert here.slope * 2.0 * change == pytest.approx(np.log(high.gain / low.gain), rel=1e-6)
+    assert here.bend * 2.0 * change == pytest.approx(high.slope - low.slope, rel=1e-6)
 
 
 def behind_a_filter(order):
@@ -116,7 +121,7 @@ def test_the_order_of_the_filter_is_told_by_all_the_records(case, order, tmp_pat
     made = measurement(case, behind_a_filter(order), tmp_path, as_in_the_case, record)
     usable = checked(made).measurement
     found = KINDS["milling"].with_filter_by(usable, case)
-    assert {run.record.recorded.order for run in found.runs} == {order}
+    assert {run.record.filter_order for run in found.runs} == {order}
     assert (found is usable) == (order == 4)
     for one in found.runs:
         assert one.record.aligned(one.of(case)).corner == pytest.approx(CORNER, rel=0.03)
