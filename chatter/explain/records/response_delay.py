@@ -2,8 +2,9 @@
 
 Power flows into a passive structure at a drive point, so that the imaginary part of a receptance
 is nowhere above zero. A delay of the measuring chain turns the phase in proportion to the
-frequency and breaks this; it is looked for only where it is broken, as the real residues of a
-structure without such a delay may well be a little complex.
+frequency and breaks this. The residues of a structure without such a delay may well be a little
+complex, so that a delay is believed only where power flows out, or where drive points along
+several axes, which are complex in ways of their own, have the same.
 """
 
 from collections.abc import Sequence
@@ -20,12 +21,19 @@ from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.fit import delay_between_channels
 
 _AXES = "xyz"
+#: directions of drive points, as they may be given
+_ALONG = (*_AXES, *(2 * axis for axis in _AXES))
+#: axes along which a delay has to be the same
+_SEVERAL = 2
 #: lines over which the imaginary part is averaged
 _LINES = 31
 #: averages above zero in their standard deviations, and over the response as a phase, rad
 _BEYOND_SCATTER, _LEAST_PHASE = 6.0, 0.02
 #: share of what is above zero that may remain without the delay
 _REMAINS = 0.25
+#: share of a delay up to which the delays of drive points differ from it, and least phase, rad,
+#: that it makes at the highest line
+_AGREES, _LEAST_TURN = 0.2, 0.05
 #: share of the summed imaginary part above zero from which the sign is wrong, not the delay
 _SIGN_TURNED = 0.9
 
@@ -64,13 +72,19 @@ class _DrivePoint:
 
 
 def without_delay(measurement: Measurement) -> tuple[Measurement, list[SignalFinding]]:
-    """Take the delay of the response channels off, by axis, where a drive point shows one.
+    """Take the delay of the response channels off, where the drive points of several axes agree.
+
+    Then by axis, where power flows out of a drive point.
 
     A machine is left as it was measured: its control may well give power.
     """
     if measurement.case.on_machine:
         return measurement, []
     runs, notes = list(measurement.runs), []
+    shared = _shared_delay(runs)
+    if shared:
+        notes.append(SignalFinding(NOTE, "", "real, imag", _sentence_of_shared(shared)))
+        runs = [_without(run, shared) if run.direction[-1:] in _AXES else run for run in runs]
     for axis in _AXES:
         read = [run for run in runs if run.direction[:1] == axis and run.direction[-1] in _AXES]
         drives = [_drive_point(run, read) for run in read if set(run.direction) == {axis}]
@@ -91,6 +105,23 @@ def _drive_point(run: Run, read: Sequence[Run]) -> _DrivePoint:
     return _DrivePoint(run.signals["frequency"], values, scatter(run, repetitions_of(run, read)))
 
 
+def _shared_delay(runs: Sequence[Run]) -> float:
+    """Delay, s, that drive points along several axes share; 0 where there is none."""
+    found: dict[str, list[float]] = {}
+    for run in runs:
+        if run.direction in _ALONG:
+            values = run.signals["real"] + 1j * run.signals["imag"]
+            drive = _DrivePoint(run.signals["frequency"], values, np.zeros(values.size))
+            found.setdefault(f"{run.direction[0]} {run.condition}", []).append(_delay(drive))
+    if len({key[0] for key in found}) < _SEVERAL:
+        return 0.0
+    each = np.array([np.median(one) for one in found.values()])
+    delay = float(np.median(each))
+    highest = max(float(run.signals["frequency"].max()) for run in runs)
+    agrees = bool(np.all(np.abs(each - delay) <= _AGREES * abs(delay)))
+    return delay if agrees and 2.0 * np.pi * highest * abs(delay) > _LEAST_TURN else 0.0
+
+
 def _common_delay(drives: Sequence[_DrivePoint]) -> float:
     """Median of the delays of FRFs, s; 0 where it does not make them passive."""
     found = [_delay(one) for one in drives]
@@ -108,6 +139,17 @@ def _delay(drive: _DrivePoint) -> float:
         return 0.0
 
 
+def _sentence_of_shared(delay: float) -> str:
+    return (
+        f"drive points along several axes have the same delay: the response {_lags(delay)}; this "
+        "was taken off"
+    )
+
+
+def _lags(delay: float) -> str:
+    return f"{'lags' if delay > 0.0 else 'leads'} the force by {abs(delay) * 1e6:.1f} us"
+
+
 def _sentence(axis: str, drives: Sequence[_DrivePoint], delay: float) -> str:
     lines = np.concatenate([one.lines() for one in drives])
     where = f"between {lines.min():.0f} and {lines.max():.0f} Hz"
@@ -116,11 +158,7 @@ def _sentence(axis: str, drives: Sequence[_DrivePoint], delay: float) -> str:
         "point takes up power"
     )
     if delay:
-        leads = "lags" if delay > 0.0 else "leads"
-        return (
-            f"{about}: the response {leads} the force by {abs(delay) * 1e6:.1f} us; this was "
-            "taken off"
-        )
+        return f"{about}: the response {_lags(delay)}; this was taken off"
     return f"{about}, and no delay accounts for it: were force and response at the same point?"
 
 

@@ -87,6 +87,48 @@ def test_cross_frfs_of_the_same_sensor_are_put_right_and_others_are_not():
     assert np.abs(values(found.runs[1]) - cross).std() < 3.0 * noise
 
 
+def of_both_axes(delay_of_x, delay_of_y):
+    """Three FRFs along each axis, too noisy to show that power flows out."""
+    along_y = sum(
+        1.0 / mass / ((2.0 * np.pi * f) ** 2 - omega**2 + 2j * damping * 2.0 * np.pi * f * omega)
+        for f, damping, mass in ((860.0, 0.04, 1.1), (1700.0, 0.03, 0.5))
+        for omega in [2.0 * np.pi * LINES]
+    )
+    return [
+        run
+        for seed in range(3)
+        for run in (
+            measured(receptance(), "x", seed, delay_of_x),
+            measured(along_y, "y", 10 + seed, delay_of_y),
+        )
+    ]
+
+
+@pytest.mark.parametrize("delay", [-6e-6, 6e-6])
+def test_a_delay_that_both_axes_share_is_taken_off_though_no_power_flows_out(delay):
+    runs = of_both_axes(delay, delay)
+    for axis in "xy":
+        own = [run for run in runs if run.direction == axis]
+        assert without_delay(measurement(*own))[1] == []
+    found, notes = without_delay(measurement(*runs))
+    for before, after in zip(runs, found.runs, strict=True):
+        turned = values(after) / values(before)
+        lag = np.median(np.unwrap(np.angle(turned)) / (2.0 * np.pi * LINES))
+        assert lag == pytest.approx(delay, abs=1e-6)
+    (note,) = notes
+    assert note.severity == "note"
+    assert ("lags" if delay > 0 else "leads") in note.description
+    assert "several axes" in note.description
+
+
+@pytest.mark.parametrize("delays", [(0.0, 0.0), (6e-6, 0.0), (3e-6, 7e-6), (5e-6, -5e-6)])
+def test_delays_that_differ_by_axis_are_of_the_structure(delays):
+    runs = of_both_axes(*delays)
+    found, notes = without_delay(measurement(*runs))
+    assert notes == []
+    assert all(one.signals is run.signals for one, run in zip(found.runs, runs, strict=True))
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_frfs_without_a_delay_are_as_they_were(seed):
     runs = tuple(measured(receptance(), "x", 10 * seed + k) for k in range(3))
