@@ -288,7 +288,7 @@ class NewCase:
 
     def _measured_modes(self) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] = []
-        for path in sorted(self._session.root.glob("modes-?.toml")):
+        for path in sorted(self._session.root.glob("modes-*.toml")):
             content = tomlkit.parse(path.read_text(encoding="utf-8")).unwrap()
             found += content.get("structure", {}).get("mode", [])
         return found

@@ -53,6 +53,9 @@ class TapTestView:
         taken: Callable[[], None] = lambda: None,
     ) -> None:
         self._session, self._show, self._taken = session, show, taken
+        #: what goes into the case, by side and direction
+        self._fitted: dict[tuple[str, str], ModalTest] = {}
+        self._fitting: Mapping[str, Any] = {}
         self.test: ModalTest | None = None
         self.files: list[Path] = []
         self.poles: list[tuple[float, float]] = []
@@ -143,7 +146,14 @@ class TapTestView:
         self.into_case.disabled = True
         self.message.object = "fitting modes ..."
         arguments = self._arguments()
+        self._fitting = arguments
+        self._hold_direction(True)
         self.computations.start(Computation(lambda go_on: self._fit(arguments, go_on), True))
+
+    def _hold_direction(self, held: bool) -> None:
+        """Keep direction and side as they are while a fit for them runs."""
+        for chosen in (self.direction, self.side):
+            chosen.disabled = held
 
     def mode_table(self) -> PageTable:
         """Return the modes that were fitted."""
@@ -179,19 +189,26 @@ class TapTestView:
         self.records[record].value = used
 
     def put_into_case(self) -> None:
-        """Put the modes into the open case, in place of those along the same direction."""
-        if self.test is None:
-            return
-        tables = tomlkit.parse(self.test.to_toml()).unwrap().get("structure", {}).get("mode", [])
+        """Put the modes of every direction that was fitted into the open case.
+
+        They take the place of those along the same direction and side.
+        """
+        tables: list[dict[str, Any]] = []
+        written = []
+        for (side, direction), test in self._fitted.items():
+            text = test.to_toml()
+            modes = tomlkit.parse(text).unwrap().get("structure", {}).get("mode", [])
+            if modes:
+                written.append(f"modes-{direction}.toml" if side == "tool"
+                               else f"modes-{side}-{direction}.toml")  # fmt: skip
+                self._session.path(written[-1]).write_text(text, encoding="utf-8")
+            tables += modes
         if not tables:
             self.message.object = "no mode with a mass: nothing goes into the case"
             return
-        text = self.test.to_toml()
-        self._session.path(f"modes-{self.direction.value}.toml").write_text(text, encoding="utf-8")
         if not self._session.name:
             self.message.object = (
-                f"modes-{self.direction.value}.toml is written; the new case of the view Case "
-                "takes it up"
+                f"written: {', '.join(written)}; the new case of the view Case takes them up"
             )
             self._taken()
             return
@@ -210,6 +227,7 @@ class TapTestView:
 
     def _options_changed(self) -> None:
         if self.files and self.files[0].parent != self._session.path(self._folder_name()):
+            self.upload.forget()  # those are of the direction before
             self.files, self.records, self.test = [], {}, None
             self._record_list.objects = []
             self.open_folder()
@@ -254,6 +272,13 @@ class TapTestView:
 
     def _fit(self, arguments: Mapping[str, Any], go_on: Progress) -> None:
         try:
+            self._fit_and_draw(arguments, go_on)
+        finally:
+            if self._fitting is arguments:  # no later one has begun
+                self._show(lambda: self._hold_direction(False))
+
+    def _fit_and_draw(self, arguments: Mapping[str, Any], go_on: Progress) -> None:
+        try:
             test = chatter.modes(**arguments)
         except InputError as error:
             told = self._short(str(error))
@@ -273,6 +298,7 @@ class TapTestView:
         self.modes.object = as_html(self.mode_table())
         for button in self.tables:
             button.disabled = False
+        self._fitted[arguments["side"], arguments["direction"]] = test
         self.into_case.disabled = not test.fit.modes
         self._files.objects = downloads(folder)
         self.same_call.object = self._same_call(arguments)

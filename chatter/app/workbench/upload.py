@@ -16,6 +16,20 @@ PART = 512 * 1024
 class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-ignore]
     """File dropper that gives up files larger than allowed, whatever the page sends."""
 
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**given)
+        self._forgotten: dict[str, Any] = {}
+
+    def forget(self) -> None:
+        """Hand over what stands in the list now no more; a file that is dropped again is new."""
+        self._forgotten = dict(self.value)
+
+    def files(self) -> dict[str, bytes]:
+        """Files that were dropped, by name."""
+        return {name: content if isinstance(content, bytes) else content.encode()
+                for name, content in self.value.items()
+                if self._forgotten.get(name) is not content}  # fmt: skip
+
     def _process_event(self, event: Any) -> None:
         data = event.data
         if event.event_name == "delete_event":
@@ -44,8 +58,7 @@ def dropper(take: Callable[[dict[str, bytes]], None], label: str) -> BoundedFile
     )  # fmt: skip
 
     def changed(_: Any) -> None:
-        files = {name: content if isinstance(content, bytes) else content.encode()
-                 for name, content in widget.value.items()}  # fmt: skip
+        files = widget.files()
         if files:
             take(files)
 

@@ -78,6 +78,37 @@ def test_hammer_files_become_a_case_and_its_modes(tapped, tmp_path):
     assert tapped.session.name == tapped.choice.value == "case.toml"
 
 
+def test_files_of_the_direction_before_do_not_go_into_the_next(tapped, tmp_path, taps):
+    """The second set of records took those of the first along that it had no names for."""
+    view = tapped.tap_test
+    assert not view.direction.disabled
+    view.upload.value["of-x.csv"] = taps["tap1.csv"]
+    view.direction.value = "y"
+    name = min(taps)
+    view.upload.value[name] = taps[name]
+    view.upload.param.trigger("value")
+    assert view.direction.disabled  # until the fit has ended
+    assert view.computations.wait(PATIENCE)
+    assert not view.direction.disabled
+    assert [one.name for one in (tmp_path / "taps-tool-y").iterdir()] == [name]
+
+
+def test_modes_of_every_direction_that_was_fitted_go_into_the_case(tapped, tmp_path, taps):
+    """The first direction was lost where both were dropped before the click."""
+    view = tapped.tap_test
+    view.direction.value = "y"
+    view.take(taps)
+    assert view.computations.wait(PATIENCE)
+    view.put_into_case()
+    assert "modes-x.toml, modes-y.toml" in view.message.object
+    for name, answer in ANSWERS.items():
+        tapped.case.new.answers[name].value = answer
+    tapped.case.new.create()
+    modes = chatter.load(tmp_path / "case.toml").structure.mode
+    along = [tuple(round(abs(part)) for part in mode.direction) for mode in modes]
+    assert along == [(1, 0, 0)] * len(CLOSE.modes) + [(0, 1, 0)] * len(CLOSE.modes)
+
+
 def test_records_are_overruled_both_ways(tapped):
     view = tapped.tap_test
     view.overrule("tap2.csv", True)
