@@ -126,7 +126,8 @@ class TapTestView:
             self.message.object = str(error)
             return
         self.files = [folder / name for name in sorted(files)]
-        self.records = {}
+        # faults found before are no ticks of a person: files come one by one
+        self.records, self.test = {}, None
         self.fit()
 
     def open_folder(self) -> None:

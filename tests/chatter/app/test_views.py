@@ -93,6 +93,17 @@ def test_files_of_the_direction_before_do_not_go_into_the_next(tapped, tmp_path,
     assert [one.name for one in (tmp_path / "taps-tool-y").iterdir()] == [name]
 
 
+def test_a_faulty_record_stays_out_where_records_come_one_after_the_other(tapped, taps):
+    """Found faulty after the first files, it was kept as if it were ticked by hand."""
+    view = tapped.tap_test
+    faulty = {one.record for one in view.test.hammer.excluded}
+    assert faulty == {"tap2.csv", "tap5.csv"}
+    view.take(taps)
+    assert view.computations.wait(PATIENCE)
+    assert {one.record for one in view.test.hammer.excluded} == faulty
+    assert not faulty & set(view.test.hammer.used)
+
+
 def test_modes_of_every_direction_that_was_fitted_go_into_the_case(tapped, tmp_path, taps):
     """The first direction was lost where both were dropped before the click."""
     view = tapped.tap_test
