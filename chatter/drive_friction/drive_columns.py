@@ -14,8 +14,17 @@ from typing import Literal
 
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
-from chatter.description.units import MeasuredUnit, dimension_of, measured_unit
+from chatter.description.units import dimension_of, measured_unit
 from chatter.io.table import Table, split_heading
+from chatter.io.trace_headings import (
+    COMMANDED,
+    DEVIATIONS,
+    TIME,
+    headings_of,
+    plain_name,
+    split_trace_heading,
+    unit_of_trace,
+)
 
 Role = Literal["time", "position", "velocity", "effort"]
 #: what a signal is by its unit: along the slide, about the motor, or before a constant is known
@@ -23,7 +32,7 @@ Kind = Literal["linear", "rotary", "current", "share"]
 
 #: words of a heading that make it a role; the controls' own names stand beside the plain ones
 _TOLD: Mapping[Role, re.Pattern[str]] = {
-    "time": re.compile(r"^(t|time|zeit|timestamp|temps|tempo|tiempo)\b"),
+    "time": TIME,
     "position": re.compile(
         r"position|lageist|posizione|posici[oó]n|^(s|x|angle)$|^s ?(act|ist)|^pos\b"
     ),
@@ -36,21 +45,9 @@ _TOLD: Mapping[Role, re.Pattern[str]] = {
         r"^par\b|corriente|^i ?(act(ual)?|ist(wert)?|q)\b|^i\(q\)|^m ?(act|ist)"
     ),
 }
-#: words of what is commanded, left over or limited, which is not what the axis did
-_NOT_ACTUAL = re.compile(
-    r"command|set ?p|\bset\b|nominal|\bnom\b|soll|error|\bdif|deviation|limit|forward|desired|"
-    r"schlepp|abweich|grenz|vorsteuer|consign|nominale|comand|err(eur|ore)|[eé]cart"
-)
+#: words of what an axis was to do, which is not what it did
+_DESIRED = re.compile(r"desired")
 _EXAMPLES = {"position": "position [mm]", "velocity": "v act. X [mm/min]", "effort": "torque [N*m]"}
-#: units of drives as their programs write them -> as the units library has them
-_WRITTEN = {
-    "nm": "N*m", "ncm": "N*cm", "r/min": "rpm", "1/min": "rpm", "u/min": "rpm",
-    "min-1": "rpm", "min^-1": "rpm", "/min": "rpm", "aeff": "A", "arms": "A",
-}  # fmt: skip
-#: what a revolution is called in a unit, besides those that the units library knows
-_COUNTS = ("1", "r", "u", "rev")
-#: of time, position, velocity, speed, force, current and torque
-_SYMBOLS = ("t", "s", "x", "v", "n", "F", "I", "i", "M")
 #: kind of a signal -> SI unit, and whether it is about an axis
 _UNITS: Mapping[Role, Mapping[Kind, tuple[str, bool]]] = {
     "position": {"linear": ("m", False), "rotary": ("rad", True)},
@@ -67,44 +64,19 @@ class DriveSignal:
     values: Array  # (n,), SI; a share of 1 is 100 %
 
 
-def split_drive_heading(heading: str) -> tuple[str, str]:
-    """Split a heading as `split_heading` does, and one with its unit behind a slash: ``"t/ms"``.
-
-    A quotient stands for a value over its unit (ISO 80000-1): the unit is one that is known, and
-    what stands before the slash is a symbol, or does not end in a unit itself, as in
-    ``"feed mm/min"``.
-    """
-    name, unit = split_heading(heading)
-    # "v/(mm/min)" is split before its bracket
-    if unit:
-        return name.removesuffix("/").strip(), unit
-    before, _, behind = (part.strip() for part in name.rpartition("/"))
-    if not before or _unit(behind) is None:
-        return name, ""
-    last = before.split()[-1]
-    of_a_unit = last.lower() in _COUNTS or _unit(last) is not None
-    return (name, "") if of_a_unit and before not in _SYMBOLS else (before, behind)
-
-
-def _unit(text: str) -> MeasuredUnit | None:
-    """Unit as it is written on controls; None where it is none."""
-    compact = text.replace(" ", "")
-    return measured_unit(_WRITTEN.get(compact.lower(), compact)) if compact else None
-
-
 def time_of(table: Table) -> Array:
     """Times (n,), s; InputError where no column tells them, or several do."""
     found = [
-        index for index, name in enumerate(_names(table)) if _TOLD["time"].search(_plain(name))
+        index for index, name in enumerate(_names(table)) if _TOLD["time"].search(plain_name(name))
     ]
     if len(found) != 1:
         count = f"{len(found)} columns" if found else "no column"
         raise InputError(
-            f"{table.path}: {count} of time; the columns are {_headings(table)}; state them by "
+            f"{table.path}: {count} of time; the columns are {headings_of(table)}; state them by "
             "--columns"
         )
     column = table.columns[found[0]]
-    unit = measured_unit(split_drive_heading(column.heading)[1] or "s")
+    unit = measured_unit(split_trace_heading(column.heading)[1] or "s")
     if unit is None or unit.dimension != dimension_of("s"):
         raise InputError(f'{table.path}: "{column.heading}": a time is in s, ms or us')
     return unit.factor * table.numbers(found[0])
@@ -134,17 +106,17 @@ def signal_of(table: Table, role: Role, stated: str | None) -> DriveSignal | Non
     else:
         index, unit, sign = _stated(table, role, stated)
     column = table.columns[index]
-    unit = unit or split_drive_heading(column.heading)[1]
+    unit = unit or split_trace_heading(column.heading)[1]
     kind, factor = _kind(table, role, column.heading, unit)
     return DriveSignal(kind, sign * factor * table.numbers(index))
 
 
 def _told(table: Table, role: Role) -> int | None:
-    names = [_plain(name) for name in _names(table)]
+    names = [plain_name(name) for name in _names(table)]
     found = [
         index
         for index, name in enumerate(names)
-        if _TOLD[role].search(name) and not _NOT_ACTUAL.search(name)
+        if _TOLD[role].search(name) and not _not_actual(name)
     ]
     exact = [index for index in found if names[index] in ("position", "velocity", "force")]
     found = exact if len(exact) == 1 else found
@@ -166,12 +138,13 @@ def _stated(table: Table, role: Role, stated: str) -> tuple[int, str, float]:
     found = whole or [
         i
         for i, one in enumerate(table.columns)
-        if _plain(name) in (_plain(split_drive_heading(one.heading)[0]), _plain(one.heading))
+        if plain_name(name)
+        in (plain_name(split_trace_heading(one.heading)[0]), plain_name(one.heading))
     ]
     if len(found) != 1:
         raise InputError(
             f'{table.path}: --{role} "{stated}": {len(found) or "no"} column'
-            f"{'s are' if len(found) > 1 else ' is'} so headed; there are {_headings(table)}"
+            f"{'s are' if len(found) > 1 else ' is'} so headed; there are {headings_of(table)}"
         )
     return found[0], unit, sign
 
@@ -180,14 +153,14 @@ def _kind(table: Table, role: Role, heading: str, unit: str) -> tuple[Kind, floa
     """What a signal is by its unit, and the factor to SI."""
     if role == "effort" and unit.strip() == "%":
         return "share", 0.01
-    found = _unit(unit)
+    found = unit_of_trace(unit)
     if found is not None:
         for kind, (si, angular) in _UNITS[role].items():
             if found.dimension == dimension_of(si) and found.has_angle == angular:
                 return kind, found.factor
     shown = f'has the unit "{unit}"' if unit else "has no unit"
     wanted = " or ".join(si for si, _ in _UNITS[role].values())
-    bare = split_drive_heading(heading)[0]
+    bare = split_trace_heading(heading)[0]
     raise InputError(
         f'{table.path}: "{heading}" {shown}; {role} is in units of {wanted}; state it, such as '
         f'--{role} "{bare} [{split_heading(_EXAMPLES[role])[1]}]"'
@@ -196,15 +169,12 @@ def _kind(table: Table, role: Role, heading: str, unit: str) -> tuple[Kind, floa
 
 def _names(table: Table) -> list[str]:
     """Headings without their units."""
-    return [split_drive_heading(column.heading)[0] for column in table.columns]
+    return [split_trace_heading(column.heading)[0] for column in table.columns]
 
 
-def _headings(table: Table) -> str:
-    return ", ".join(f'"{column.heading}"' for column in table.columns)
-
-
-def _plain(name: str) -> str:
-    return " ".join(re.sub(r"[._]+", " ", name.lower()).split())
+def _not_actual(name: str) -> bool:
+    """Whether a name is of what is commanded, a deviation or a limit."""
+    return any(words.search(name) for words in (COMMANDED, DEVIATIONS, _DESIRED))
 
 
 def slide_travel_per_angle(lead: float) -> float:

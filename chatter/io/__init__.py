@@ -8,6 +8,8 @@ files            opening within limits, text told from binary content
 table            columns of numbers or words, whatever the format
 headings         names and units of columns
 stated_columns   tables of signals, headings stated where a file has none
+trace_headings   names and units in headings of traces of controls
+set_points       recorded set points of axes
 signals          signals of a measurement in SI, by name
 hammer_records   hammer records, one or a folder of them
 matrices         matrices and nodes of a finite element program

@@ -20,8 +20,9 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.sections.program import Program
 from chatter.io.nc_program.program import ProgramBlock, read_program
+from chatter.io.set_points import recorded_positions
 from chatter.simulation.spindle import ProgrammedSpindle, Spindle
-from chatter.simulation.virtual_tests.courses import program_motion, recorded_positions
+from chatter.simulation.virtual_tests.courses import program_motion
 from dynamics.trajectory.block_motion import BlockMotion, PathLimits
 from dynamics.trajectory.motion import Trajectory, TrajectoryError
 from dynamics.trajectory.recorded import RecordedMotion

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.description.machine.move import Course, MoveSection
-from chatter.io.headings import named
 from chatter.io.nc_program.program import NcProgram, read_program
-from chatter.io.stated_columns import read_signal_table
-from dynamics.frf.container import MeasurementError
+from chatter.io.set_points import recorded_positions
 from dynamics.trajectory.block_motion import Block, BlockMotion, PathLimits, eased, rounded
 from dynamics.trajectory.motion import SomeCoordinates, TrajectoryError
 from dynamics.trajectory.recorded import RecordedMotion
@@ -93,35 +90,6 @@ def _of_record(section: MoveSection) -> Course:
     motion = RecordedMotion(time, position)
     _refuse_faster(section, motion, time)
     return Course(motion)
-
-
-def recorded_positions(path: Path, axes: Sequence[str]) -> tuple[Array, Array]:
-    """Times (n,), s, and set points (n, axes), m, of a record: columns "time", and "X" or "X set".
-
-    InputError if the file cannot be read or lacks a column.
-    """
-    try:
-        table = read_signal_table(path)
-        found = {}
-        for index, column in enumerate(table.columns):
-            name, factor = named(path, column.heading)
-            if column.content is None and not column.unit:
-                raise InputError(
-                    f'{path}: "{column.heading}" has no unit; write it in brackets, such as '
-                    f'"{column.name} [mm]"'
-                )
-            found[name.lower()] = factor * table.numbers(index)
-    except MeasurementError as error:
-        raise InputError(str(error)) from error
-    columns = [
-        next((found[key] for key in (f"{name} set".lower(), name.lower()) if key in found), None)
-        for name in ("time", *axes)
-    ]
-    for name, values in zip(("time", *axes), columns, strict=True):
-        if values is None:
-            held = ", ".join(f'"{column.heading}"' for column in table.columns)
-            raise InputError(f'{path}: no column "{name}" or "{name} set"; there are {held}')
-    return columns[0], np.column_stack(columns[1:])
 
 
 def _refuse_faster(section: MoveSection, motion: RecordedMotion, time: Array) -> None:

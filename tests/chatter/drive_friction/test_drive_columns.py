@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from chatter.description.errors import InputError
-from chatter.drive_friction.drive_columns import split_drive_heading
 from chatter.drive_friction.drive_records import DriveSettings, drive_records
 
 #: of the recorded axis
@@ -128,19 +127,3 @@ def test_records_of_different_motions_are_refused(tmp_path):
     motor = write(tmp_path / "b.csv", "time [s],speed [rad/s],torque [N*m]", TIME, VELOCITY, FORCE)
     with pytest.raises(InputError, match=r"b.csv: is about the motor, .*a.csv is along the slide"):
         drive_records([slide, motor])
-
-
-@pytest.mark.parametrize(
-    ("heading", "name", "unit"),
-    [
-        ("t/ms", "t", "ms"),
-        ("v/(mm/min)", "v", "mm/min"),
-        ("motor speed/rpm", "motor speed", "rpm"),
-        ("velocity mm/min", "velocity mm/min", ""),
-        ("speed r/min", "speed r/min", ""),
-        ("m/s", "m/s", ""),
-        ("force/displacement", "force/displacement", ""),
-    ],
-)
-def test_unit_behind_a_slash(heading, name, unit):
-    assert split_drive_heading(heading) == (name, unit)
