@@ -63,8 +63,7 @@ class _DrivePoint:
     @property
     def frf(self) -> Frf:
         """Lines above 0 Hz."""
-        positive = self.frequency > 0.0
-        return Frf(self.frequency[positive], self.values[positive])
+        return _frf(self.frequency, self.values)
 
     def lines(self) -> NDArray[np.float64]:
         """Frequencies, Hz, at which power flows out."""
@@ -101,8 +100,18 @@ def without_delay(measurement: Measurement) -> tuple[Measurement, list[SignalFin
 
 
 def _drive_point(run: Run, read: Sequence[Run]) -> _DrivePoint:
-    values = run.signals["real"] + 1j * run.signals["imag"]
-    return _DrivePoint(run.signals["frequency"], values, scatter(run, repetitions_of(run, read)))
+    own = scatter(run, repetitions_of(run, read))
+    return _DrivePoint(run.signals["frequency"], _receptance(run), own)
+
+
+def _receptance(run: Run) -> NDArray[np.complex128]:
+    return run.signals["real"] + 1j * run.signals["imag"]
+
+
+def _frf(frequency: NDArray[np.float64], values: NDArray[np.complex128]) -> Frf:
+    """Lines above 0 Hz."""
+    positive = frequency > 0.0
+    return Frf(frequency[positive], values[positive])
 
 
 def _shared_delay(runs: Sequence[Run]) -> float:
@@ -110,9 +119,8 @@ def _shared_delay(runs: Sequence[Run]) -> float:
     found: dict[str, list[float]] = {}
     for run in runs:
         if run.direction in _ALONG:
-            values = run.signals["real"] + 1j * run.signals["imag"]
-            drive = _DrivePoint(run.signals["frequency"], values, np.zeros(values.size))
-            found.setdefault(f"{run.direction[0]} {run.condition}", []).append(_delay(drive))
+            frf = _frf(run.signals["frequency"], _receptance(run))
+            found.setdefault(f"{run.direction[0]} {run.condition}", []).append(_delay(frf))
     if len({key[0] for key in found}) < _SEVERAL:
         return 0.0
     each = np.array([np.median(one) for one in found.values()])
@@ -124,7 +132,7 @@ def _shared_delay(runs: Sequence[Run]) -> float:
 
 def _common_delay(drives: Sequence[_DrivePoint]) -> float:
     """Median of the delays of FRFs, s; 0 where it does not make them passive."""
-    found = [_delay(one) for one in drives]
+    found = [_delay(one.frf) for one in drives]
     delay = float(np.median(found))
     remains, all_of_it = (
         sum(float(np.sum(one.above(at) ** 2)) for one in drives) for at in (delay, 0.0)
@@ -132,9 +140,9 @@ def _common_delay(drives: Sequence[_DrivePoint]) -> float:
     return delay if remains < _REMAINS * all_of_it else 0.0
 
 
-def _delay(drive: _DrivePoint) -> float:
+def _delay(frf: Frf) -> float:
     try:
-        return delay_between_channels(drive.frf)
+        return delay_between_channels(frf)
     except MeasurementError:
         return 0.0
 
@@ -165,8 +173,7 @@ def _sentence(axis: str, drives: Sequence[_DrivePoint], delay: float) -> str:
 def _without(run: Run, delay: float) -> Run:
     if not delay:
         return run
-    values = run.signals["real"] + 1j * run.signals["imag"]
-    turned = _advanced(values, run.signals["frequency"], delay)
+    turned = _advanced(_receptance(run), run.signals["frequency"], delay)
     return replace(run, signals={**run.signals, "real": turned.real, "imag": turned.imag})
 
 
