@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -328,8 +329,11 @@ class Explanation(NotebookResult):
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.json, report.html, residual.png and case-updated.toml."""
-        summary = self.summary()
-        picture = presentation("plots.style").png_of(self.plot())
+        with ThreadPoolExecutor(max_workers=1) as beside:
+            lobes = beside.submit(lambda: self.lobes)
+            summary = self.summary()
+            picture = presentation("plots.style").png_of(self.plot())
+            lobes.result()
         page = presentation("report.explanation").page_of(self, summary, picture)
         texts = {"explanation.json": as_json(summary), "report.html": page}
         written = write_results(folder, texts, {})

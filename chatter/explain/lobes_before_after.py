@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 #: what lobes need of a case
 _NEEDED = ("tool", "material", "cut", "structure")
-_SPEEDS, _DEPTHS = 100, 60
+_SPEEDS, _DEPTHS = 100, 40
 #: speeds at which it is asked whether an effect acts in lobes at all
 _ASKED = 16
 #: speeds beyond those that were measured, and depths beyond the deepest cut

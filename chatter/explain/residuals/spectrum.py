@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from chatter.description.formatting import to_digits
@@ -17,7 +15,7 @@ from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.natural_modes import natural_modes
 from chatter.explain.residuals.residual import Residual
-from chatter.explain.residuals.variables import spindle_angle
+from chatter.explain.residuals.spindle_harmonics import SpindleHarmonics, Split
 from dynamics.modal.modes import Mode
 
 Array = NDArray[np.float64]
@@ -62,7 +60,7 @@ def spectrum(residual: Residual) -> Finding:
         parts = [part for part in residual.parts if part.run is run]
         if not parts:
             continue
-        harmonics = Harmonics(parts[0])
+        harmonics = SpindleHarmonics(parts[0])
         for part in parts:
             by_channel[part.channel].append(_shares(part, harmonics.split(part)))
     numbers, reported = {}, {}
@@ -285,109 +283,3 @@ def _panel(pooled: _Pooled) -> Curves:
         floor=1.0,
         logarithmic="y",
     )
-
-
-#: samples of a run that are examined, and the fewest a harmonic
-_MOST_SAMPLES, _SAMPLES_A_HARMONIC = 6000, 6
-#: of a harmonic the fewest samples a cycle
-_SAMPLES_A_CYCLE = 2.2
-#: share of the diagonal that keeps the harmonics of a short record apart
-_RIDGE = 1e-9
-#: lines on each side over which the level beside a line is read
-_BESIDE = 12
-
-
-class Split(NamedTuple):
-    """One channel of one run, in the frequency domain; squares are over those of the noise."""
-
-    orders: NDArray[np.intp]  # (k,), of the spindle
-    at_orders: Array  # (k,), sum of squares at each; 2 for noise
-    frequency: Array  # (m,), Hz
-    density: Array  # (m,), of what lies between the harmonics; 1 for noise
-    whole: Array  # (m,), of everything
-    beside: Array  # (m,), level beside lines
-    samples: int
-
-
-class Harmonics:
-    """Harmonics of the spindle in one run, shared by its channels."""
-
-    def __init__(self, residual: ChannelResidual) -> None:
-        angle = spindle_angle(residual)[:_MOST_SAMPLES]
-        self.samples = angle.size
-        self.step = residual.step
-        a_sample = float(np.median(np.diff(angle)))
-        highest = int(2.0 * math.pi / (a_sample * _SAMPLES_A_CYCLE))
-        count = max(1, min(highest, self.samples // (2 * _SAMPLES_A_HARMONIC)))
-        self.orders = np.arange(1, count + 1)
-        self.turns = _powers(np.exp(1j * angle), count)
-        gram = _gram(self.turns)
-        # of less than a revolution harmonics are collinear
-        gram[np.diag_indices_from(gram)] += _RIDGE * self.samples
-        self.factor = np.linalg.cholesky(gram)
-        self.window = np.hanning(self.samples)
-        self.frequency = np.fft.rfftfreq(self.samples, self.step)
-
-    def split(self, residual: ChannelResidual) -> Split:
-        """Split one channel of the run."""
-        values = residual.normalised[: self.samples]
-        sums = self.turns @ values
-        right = np.concatenate([[values.sum()], np.column_stack([sums.real, sums.imag]).ravel()])
-        parts = scipy.linalg.solve_triangular(self.factor, right, lower=True)
-        amplitudes = scipy.linalg.solve_triangular(self.factor, parts, lower=True, trans="T")
-        between = values - amplitudes[0]
-        between -= ((amplitudes[1::2] - 1j * amplitudes[2::2]) @ self.turns).real
-        density = self._density(between)
-        return Split(
-            self.orders,
-            np.sum(parts[1:].reshape(-1, 2) ** 2, axis=1),
-            self.frequency,
-            density,
-            self._density(values),
-            _level_beside(density),
-            self.samples,
-        )
-
-    def _density(self, values: Array) -> Array:
-        lines = np.abs(np.fft.rfft(values * self.window)) ** 2
-        return lines / np.sum(self.window**2)
-
-
-def _powers(turn: NDArray[np.complex128], count: int) -> NDArray[np.complex128]:
-    """Powers (m, n) of turns exp(i angle), the first to the m-th."""
-    powers = np.empty((count, turn.size), dtype=np.complex128)
-    powers[0] = turn
-    for before, power in itertools.pairwise(powers):
-        np.multiply(before, turn, out=power)
-    return powers
-
-
-def _gram(turns: NDArray[np.complex128]) -> Array:
-    """Products (2 m + 1, 2 m + 1) of 1, cos, sin, cos, ... of m multiples of an angle, summed.
-
-    Of powers (m, n) of its turn, exp(i k angle): products are sums over sums and differences of the
-    orders, so that 2 m + 1 sums make all of them.
-    """
-    count, samples = turns.shape
-    # sums of exp(i k angle) for k = 0 ... 2 m
-    sums = np.concatenate([[samples], turns.sum(axis=1), turns @ turns[-1]])
-    orders = np.arange(1, count + 1)
-    above = sums[orders[:, None] + orders]
-    apart = orders[:, None] - orders
-    below = np.where(apart < 0, sums[np.abs(apart)].conj(), sums[np.abs(apart)])
-    gram = np.empty((2 * count + 1, 2 * count + 1))
-    gram[0, 0] = samples
-    gram[0, 1::2] = gram[1::2, 0] = sums[1 : count + 1].real
-    gram[0, 2::2] = gram[2::2, 0] = sums[1 : count + 1].imag
-    gram[1::2, 1::2] = 0.5 * (below + above).real
-    gram[2::2, 2::2] = 0.5 * (below - above).real
-    gram[1::2, 2::2] = 0.5 * (above - below).imag
-    gram[2::2, 1::2] = gram[1::2, 2::2].T
-    return gram
-
-
-def _level_beside(density: Array) -> Array:
-    """Running median of a periodogram, as the mean of one without lines."""
-    padded = np.pad(density, _BESIDE, mode="reflect" if density.size > _BESIDE else "edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1)
-    return np.median(windows, axis=1) / math.log(2.0)
