@@ -14,11 +14,17 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
+from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.pockets import Pocket, find_pockets
+from chatter.stability.neglected_effects import EDGE_FORCES, NeglectedEffect, deciding, notes_of
+from chatter.stability.pockets import Pocket, depth_margin, find_pockets
 from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.resting_friction import (
+    limits_with_resting_friction,
+    neglected_resting_friction,
+)
 from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
 
 #: stage -> speeds, depths of the grid
@@ -49,6 +55,7 @@ class LiveCase:
         self.sliders = (*self.view, *case_sliders(case))
         self._followed = FollowedLimits()
         self._followed_diagram: _Drawn | None = None
+        self._neglected: tuple[NeglectedEffect, ...] = ()
         self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
 
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
@@ -99,11 +106,14 @@ class LiveCase:
 
     def _described(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> dict[str, Any]:
         """Diagram of limits, as the page takes it."""
-        case, cut, deepest = drawn.case, drawn.case.cut, drawn.max_depth
+        cut, deepest = drawn.case.cut, drawn.max_depth
         pockets: Sequence[Pocket] = ()
         if drawn.stage == "fine":
-            area = case.width_of_cut * cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
-            pockets = find_pockets(curve.spindle_speed, curve.critical_depth, deepest, area)
+            self._neglected = self._left_out(drawn.model, curve)
+            pockets = _pockets_of(drawn, curve, self._neglected)
+        neglected = self._neglected  # in a coarse diagram that of the last fine one
+        crossings = self._crossings_of_cut(drawn, curve, progress)
+        stable = int((crossings < cut.axial_depth).sum()) % 2 == 0
         return {
             "stage": drawn.stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
@@ -115,24 +125,29 @@ class LiveCase:
             "operating": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
-                "stable": self._is_stable(drawn, curve, progress),
+                "stable": stable,
+                "certain": not deciding(neglected, cut.axial_depth, crossings, stable=stable),
             },
-            "notes": list(drawn.model.notes),
+            "notes": [*drawn.model.notes, *notes_of(neglected)],
         }
 
-    def _is_stable(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> bool:
-        """Whether the cut is; in a coarse diagram by the limits of the nearest speed."""
+    def _left_out(self, model: MillingModel, curve: LimitCurve) -> tuple[NeglectedEffect, ...]:
+        """What linear limits leave out, as `chatter.lobes` states it."""
+        return (
+            *neglected_resting_friction(model),
+            *neglected_in_steady_cut(model, self._method, curve.critical_depth),
+        )
+
+    def _crossings_of_cut(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> Array:
+        """Limits at the speed of the cut, m; in a coarse diagram those of the nearest speed."""
         case, cut, speeds = drawn.case, drawn.case.cut, curve.spindle_speed
         inside = speeds[0] <= cut.spindle_speed <= speeds[-1] and cut.axial_depth <= drawn.max_depth
         if drawn.stage == "coarse" and inside:
-            crossings = curve.crossings[int(np.argmin(np.abs(speeds - cut.spindle_speed)))]
-        else:
-            deepest = beyond_the_cut(case, 1.02 * drawn.max_depth)
-            depths = np.linspace(0.0, deepest, STAGES[drawn.stage][1] + 1)[1:]
-            speed, steps = np.array([cut.spindle_speed]), fixed_steps(case)
-            found = self._method.limits(drawn.model, speed, depths, steps, progress)
-            crossings = found.crossings[0]
-        return int((crossings < cut.axial_depth).sum()) % 2 == 0
+            return curve.crossings[int(np.argmin(np.abs(speeds - cut.spindle_speed)))]
+        deepest = beyond_the_cut(case, 1.02 * drawn.max_depth)
+        depths = np.linspace(0.0, deepest, STAGES[drawn.stage][1] + 1)[1:]
+        speed, steps = np.array([cut.spindle_speed]), fixed_steps(case)
+        return self._method.limits(drawn.model, speed, depths, steps, progress).crossings[0]
 
     def simulation(
         self, given: Any, speed_rpm: float, depth_mm: float, progress: Progress
@@ -182,6 +197,18 @@ class _Drawn(NamedTuple):
     model: MillingModel
     stage: str
     max_depth: float  # m
+
+
+def _pockets_of(
+    drawn: _Drawn, curve: LimitCurve, neglected: Sequence[NeglectedEffect]
+) -> Sequence[Pocket]:
+    """Pockets that keep what is left out in hand, as `chatter.lobes` has them."""
+    cut, case = drawn.case.cut, drawn.case
+    area = case.width_of_cut * cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+    zero_order = zero_order_of(drawn.model, curve.spindle_speed)
+    limits = limits_with_resting_friction(drawn.model, zero_order).bounded(curve.critical_depth)
+    margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
+    return find_pockets(curve.spindle_speed, limits, drawn.max_depth, area, depth_margin=margin)
 
 
 def _pocket(found: Pocket) -> dict[str, float | None]:

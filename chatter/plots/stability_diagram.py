@@ -22,6 +22,7 @@ from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
 
 if TYPE_CHECKING:
+    from chatter.description.sections.cut import Cut
     from chatter.stability.diagram import StabilityDiagram, StabilityMap
 
 _FILL_ROWS, _FILL_COLUMNS = 1000, 1000
@@ -35,6 +36,10 @@ _LINE_LENGTH = 100
 _NO_POCKET = "no pocket between these speeds"
 #: depth shown over the highest limit, the same where some speeds have none, and over the cut
 _ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
+#: a cut so many times as deep as the limits that are shown is marked at the upper edge
+_FAR_ABOVE = 2.5
+#: height of that mark and of the foot of its arrow, in that of the picture
+_EDGE, _FOOT = 0.9, 0.92
 #: more values than this make a line without markers
 _FEW_VALUES = 150
 #: spectral radii beyond this look the same
@@ -105,7 +110,11 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
             word, look = "stable", {"marker": "o", "color": style.GREEN}
         if diagram.deciding:
             word, look = "not certain", {"marker": "o", "color": style.ORANGE}
-        style.mark_cut(axes, diagram.case.cut, f"operating point, {word}", **look)
+        cut = diagram.case.cut
+        if cut.axial_depth > top:
+            _point_above(axes, cut, top * 1e3, look["color"])
+            cut = cut.model_copy(update={"axial_depth": _EDGE * top})
+        style.mark_cut(axes, cut, f"operating point, {word}", **look)
     else:
         _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * 1e3, x)
     _name_sides(axes)
@@ -152,7 +161,23 @@ def _top(diagram: StabilityDiagram) -> float:
     if not found:
         return max(searched, cut)
     above = _ABOVE_GAPS if np.isinf(diagram.limits.critical_depth).any() else _ABOVE_LIMITS
-    return max(min(above * max(found), searched), cut)
+    shown = min(above * max(found), searched)
+    # lobes that a deep cut presses to the ground cannot be read
+    return shown if diagram.is_over_speed and cut > _FAR_ABOVE * shown else max(shown, cut)
+
+
+def _point_above(axes: Axes, cut: Cut, top: float, colour: str) -> None:
+    """Draw an arrow from the mark of a cut at the upper edge to its depth above the picture."""
+    x = rpm(cut.spindle_speed)
+    axes.annotate(
+        "", (x, top), (x, _FOOT * top), zorder=5,
+        arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.6},
+    )  # fmt: skip
+    axes.annotate(
+        f"at {to_digits(cut.axial_depth * 1e3, 3)} mm", (x, _EDGE * top), (9.0, 0.0),
+        textcoords="offset points", va="center", fontsize=8.5, zorder=5,
+        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0.0, "pad": 1.0},
+    )  # fmt: skip
 
 
 def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:

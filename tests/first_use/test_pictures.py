@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 
 import chatter
 from chatter.description.units import from_rpm
@@ -78,6 +79,19 @@ def test_the_depth_axis_ends_a_little_above_the_lobes(over_width):
         top = plot_limits(diagram).axes[0].get_ylim()[1]
         highest = 1e3 * diagram.limits.critical_depth.max()
         assert highest < top <= 1.3 * highest
+
+
+def test_a_cut_far_above_the_lobes_does_not_press_them_to_the_ground():
+    """Lobes of 2 mm below a cut of 20 mm filled a tenth of the picture."""
+    diagram = chatter.lobes(cut(cut__axial_depth="20 mm", lobes__depths={"to": "30 mm"}))
+    axes = plot_limits(diagram).axes[0]
+    top = axes.get_ylim()[1]
+    assert top <= 1.3e3 * diagram.limits.critical_depth.max()
+    (mark,) = [line for line in axes.get_lines() if "operating point" in str(line.get_label())]
+    assert "at 20 mm" in [text.get_text() for text in axes.texts]
+    assert 0.8 * top < mark.get_ydata()[0] < top
+    (arrow,) = [one for one in axes.texts if isinstance(one, Annotation) and one.arrow_patch]
+    assert arrow.xy[1] == pytest.approx(top)
 
 
 def test_a_bifurcation_ends_where_its_points_end():

@@ -1,7 +1,8 @@
 """Stability: a diagram that follows sliders, and points of it simulated by a click."""
 
+import math
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import panel as pn
@@ -9,6 +10,7 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
+from chatter.app.depth_axis import end_of_depth_axis
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.computations import Computation, Computations
@@ -18,6 +20,7 @@ from chatter.app.workbench.table_files import PageTable
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import Case
 from chatter.description.progress import Progress
+from chatter.plots.style import ORANGE
 
 _STEPS = 400
 #: s after the last move of a slider until the fine diagram is begun: it would hold up the next move
@@ -26,6 +29,12 @@ _REST = 0.15
 _WIDTH, _WIDTH_BESIDE = 820, 620
 #: the handle goes to where it is put without gliding there: each frame of that would be painted
 _AT_ONCE = ".noUi-state-tap .noUi-connect, .noUi-state-tap .noUi-origin {transition: none}"
+#: height of the mark of a cut above the diagram, in that of the diagram
+_EDGE = 0.97
+_DOUBT = (
+    "operating point: stability is not certain, as linear methods leave out what may decide it; "
+    "a click on the point simulates it",
+)
 _HEADING = ("spindle_speed [rpm]", "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation")
 
 
@@ -57,11 +66,12 @@ class StabilityView:
         self._live, self._file, self._show = LiveCase(case, method), file, show
         self._method, self._beside = method, beside
         self._diagram: dict[str, Any] = {}
+        self.top = 0.0  # mm
         self.sliders = {one.path: _widget(one) for one in self._live.sliders}
         self.limit = ColumnDataSource(
             {name: [] for name in ("speed", "depth", "stable", "frequency", "kind")}
         )
-        self.operating = ColumnDataSource({"speed": [], "depth": [], "colour": []})
+        self.operating = ColumnDataSource({"speed": [], "depth": [], "colour": [], "marker": []})
         self.pockets = ColumnDataSource({"speed": [], "depth": [], "limit": [], "rate": []})
         self.optimum = ColumnDataSource({"speed": [], "depth": []})
         self.band = ColumnDataSource({"speed": [], "low": [], "high": []})
@@ -130,10 +140,12 @@ class StabilityView:
     def show_band(self, speed: Any, low: Any, high: Any) -> None:
         """Draw the band of an uncertain limit: speeds in rpm, depths in mm."""
         self.band.data = {"speed": speed, "low": low, "high": high}
+        self._update_legend()
 
     def mark_optimum(self, speed: float, depth: float) -> None:
         """Mark a cut: speed in rpm, depth in mm."""
         self.optimum.data = {"speed": [speed], "depth": [depth]}
+        self._update_legend()
 
     def moved(self) -> dict[str, float]:
         """Values of the sliders that have been moved, by path."""
@@ -178,6 +190,9 @@ class StabilityView:
         self._diagram, cut = diagram, diagram["operating"]
         none = float("nan")
         deepest = diagram["max_axial_depth_mm"]
+        if self._beside is None:
+            self.top = deepest if self._depth_is_stated() else end_of_depth_axis(diagram, self.top)
+        top = self.top if self._beside is None else self._beside.top
         self.limit.data = {
             "speed": diagram["spindle_speed_rpm"],
             "depth": [found[0] if found else none for found in diagram["crossings_mm"]],
@@ -192,10 +207,13 @@ class StabilityView:
             "limit": [one["critical_depth_mm"] for one in found],
             "rate": [one["removal_rate_cm3_per_min"] for one in found],
         }
+        above = cut["axial_depth_mm"] > top
         operating = {
             "speed": [cut["spindle_speed_rpm"]],
-            "depth": [cut["axial_depth_mm"]],
-            "colour": ["#2e7d32" if cut["stable"] else "#c62828"],
+            "depth": [_EDGE * top if above else cut["axial_depth_mm"]],
+            "colour": [_colour_of(cut)],
+            # points to a cut above the diagram
+            "marker": ["triangle" if above else "circle"],
         }
         # what stays is not sent again
         for source, data in ((self.pockets, pockets), (self.operating, operating)):
@@ -205,8 +223,22 @@ class StabilityView:
             self._lobes.x_range.update(
                 start=diagram["spindle_speed_rpm"][0], end=diagram["spindle_speed_rpm"][-1]
             )
-            self._lobes.y_range.update(start=0.0, end=deepest)
-        self.message.object = "; ".join(diagram["notes"])
+            self._lobes.y_range.update(start=0.0, end=top)
+        self._update_legend()
+        self.message.object = "; ".join([*_DOUBT[: not cut["certain"]], *diagram["notes"]])
+
+    def _update_legend(self) -> None:
+        """Name what is drawn; an entry that comes is painted, one of a source that fills is not."""
+        (legend,) = self._lobes.legend
+        for item in legend.items:
+            (drawn,) = item.renderers
+            if len(drawn.data_source.data["speed"]):
+                item.visible = True
+
+    def _depth_is_stated(self) -> bool:
+        """Whether the slider, or the case, says how deep the diagram is."""
+        lobes = self._live.case.lobes
+        return "lobes.depths.to" in self.moved() or bool(lobes and lobes.depths)
 
     def _simulate(
         self, values: dict[str, float], speed: float, depth: float, go_on: Progress
@@ -261,7 +293,7 @@ class StabilityView:
         line = drawn.line("speed", "depth", source=self.limit, line_width=2, color="#1f3b57",
                           level="overlay", legend_label="critical axial depth")  # fmt: skip
         drawn.scatter(
-            "speed", "depth", source=self.operating, size=11, color="colour",
+            "speed", "depth", source=self.operating, size=11, color="colour", marker="marker",
             level="overlay", legend_label="operating point",
         )  # fmt: skip
         pockets = drawn.scatter(
@@ -286,6 +318,8 @@ class StabilityView:
             HoverTool(renderers=[pockets], tooltips=of_pockets),
         )
         legend_above(drawn)
+        for item in drawn.legend[0].items:
+            item.visible = False  # until there is something to draw
         drawn.on_event(Tap, lambda event: self.simulate(event.x, event.y))
         return drawn
 
@@ -294,6 +328,12 @@ class StabilityView:
         drawn.xaxis.axis_label, drawn.yaxis.axis_label = "revolution", "tool [um]"
         drawn.varea("revolution", "low", "high", source=self.motion, color="#5b84b1")
         return drawn
+
+
+def _colour_of(cut: Mapping[str, Any]) -> str:
+    if not cut["certain"]:
+        return ORANGE
+    return "#2e7d32" if cut["stable"] else "#c62828"
 
 
 class _PromptFloat(pn.widgets.FloatSlider):
@@ -319,4 +359,10 @@ def _widget(one: Slider) -> pn.widgets.Widget:
     if one.whole:
         return _PromptInteger(label=name, **ends)
     step = (one.high - one.low) / _STEPS
-    return _PromptFloat(label=name, step=step, format="0.[0000]", **ends)
+    return _PromptFloat(label=name, step=step, format=_format(one.high), **ends)
+
+
+def _format(high: float) -> str:
+    """Decimals that a value of a slider is shown with, five digits at its upper end."""
+    decimals = min(6, max(0, 4 - math.floor(math.log10(high)))) if high > 0.0 else 4
+    return f"0.[{'0' * decimals}]" if decimals else "0"

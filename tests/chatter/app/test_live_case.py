@@ -148,3 +148,22 @@ def test_coarse_diagram_follows_the_boundary_that_the_fine_one_finds():
     assert coarse["operating"]["stable"] == fine["operating"]["stable"]
     heard = [value for value in coarse["chatter_frequency_Hz"] if value is not None]
     assert all(900.0 < value < 1100.0 for value in heard)
+
+
+EDGE = {"material.Kte": "27.7 N/mm", "material.Kre": "26.6 N/mm", "cut.feed_per_tooth": "0.015 mm"}
+
+
+def test_what_edge_forces_leave_open_is_said_as_the_command_says_it():
+    """The page named pockets and a stable cut where the command is not certain."""
+    case = chatter.load(CASE).patch(EDGE)
+    live, told = LiveCase(case, "collocation"), chatter.lobes(case).summary()
+    assert not told["operating_point"]["certain"]
+    assert not told["pockets"]
+    fine = live.diagram({}, "fine", no_progress)
+    assert (fine["operating"]["certain"], fine["pockets"]) == (False, [])
+    assert any("edge forces" in note for note in fine["notes"])
+    # it does not change its mind while a slider moves
+    assert not live.diagram({"material.Ktc": 610.0}, "coarse", no_progress)["operating"]["certain"]
+    plain = LiveCase(chatter.load(CASE), "collocation").diagram({}, "fine", no_progress)
+    assert plain["operating"]["certain"]
+    assert plain["pockets"]
