@@ -34,7 +34,7 @@ if _IS_OURS:
 # matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
@@ -101,8 +101,23 @@ program = typer.Typer(
 )
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from chatter import __version__
+
+        typer.echo(f"chatter {__version__}")
+        raise typer.Exit
+
+
 @program.callback()
-def _of_all() -> None:
+def _of_all(
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version and end."
+        ),
+    ] = False,
+) -> None:
     """Chatter and stability of milling, and the machines that it happens on."""
 
 

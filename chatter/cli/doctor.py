@@ -19,9 +19,9 @@ def doctor(json: options.Json = False) -> None:
     from chatter.first_steps.installation import installation
     from chatter.first_steps.self_check import self_check
 
-    state = installation()
-    with progress_bar("self-check; the first one compiles, about a minute"):
+    with progress_bar("self-check; the first one compiles, one or two minutes"):
         answers = self_check()
+    state = installation()  # the code that the check compiled is among it
     right = all(one.right for one in answers)
     if json:
         print_json({**state, "self_check": [one._asdict() for one in answers], "right": right})

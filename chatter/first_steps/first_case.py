@@ -63,8 +63,9 @@ def first_case(answers: dict[str, str], folder: str | Path = ".") -> str:
         If an answer lacks a part, or makes no case; the question is named.
     """
     document = tomlkit.document()
-    document.add("title", f"{answers['tool']}, {answers['material']}")
-    document.add("tool", _tool(answers["tool"]))
+    tool = _tool(answers["tool"])
+    document.add("title", _title(tool, answers["material"]))
+    document.add("tool", tool)
     document.add("material", _material(answers["material"]))
     document.add("cut", _cut(answers["cut"], answers["engagement"]))
     document.add("structure", _structure(answers["dynamics"]))
@@ -72,6 +73,13 @@ def first_case(answers: dict[str, str], folder: str | Path = ".") -> str:
     case = loads(text, "the new case", folder)
     _refuse_unusable(case)
     return f"{text}\n{_range_of_diagram(case)}"
+
+
+def _title(tool: tomlkit.items.Table, material: str) -> str:
+    """Title such as "End mill 12 mm, 4 teeth, Al7075-T6"."""
+    teeth = f"{tool['teeth']} {'tooth' if tool['teeth'] == 1 else 'teeth'}"
+    worked = f"Ktc and Krc {material}" if "Pa" in material else material
+    return f"End mill {tool['diameter']}, {teeth}, {worked}"
 
 
 def _range_of_diagram(case: Case) -> str:

@@ -22,7 +22,8 @@ from chatter.app.workbench.result_panel import CODE
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
-from chatter.first_steps.first_case import QUESTIONS, first_case
+from chatter.first_steps.first_case import QUESTIONS, Question, first_case
+from cutting.material.table import MATERIALS
 
 _ERROR = {"color": "#c62828", "font-size": "12px"}
 _PATH = re.compile(r"^([A-Za-z_][\w.\[\]-]*): (.*)$", re.DOTALL)
@@ -239,10 +240,7 @@ class NewCase:
 
     def __init__(self, session: Session, made: Callable[[str], None]) -> None:
         self._session, self._made = session, made
-        self.answers = {
-            name: pn.widgets.TextInput(label=one.text, placeholder=one.example, width=420)
-            for name, one in QUESTIONS.items()
-        }
+        self.answers = {name: _answer(name, one) for name, one in QUESTIONS.items()}
         self.name = pn.widgets.TextInput(label="File", value="case.toml", width=200)
         self.make = pn.widgets.Button(label="Make the case", color="primary")
         self.message = wrapped_text(width=860, styles=_ERROR)
@@ -292,3 +290,14 @@ class NewCase:
             content = tomlkit.parse(path.read_text(encoding="utf-8")).unwrap()
             found += content.get("structure", {}).get("mode", [])
         return found
+
+
+def _answer(name: str, question: Question) -> pn.widgets.Widget:
+    """Field of an answer; a material is chosen from the table, or typed."""
+    given = {"label": question.text, "placeholder": question.example, "width": 420}
+    if name != "material":
+        return pn.widgets.TextInput(**given)
+    return pn.widgets.AutocompleteInput(
+        options=list(MATERIALS), restrict=False, min_characters=0,
+        case_sensitive=False, search_strategy="includes", **given,
+    )  # fmt: skip

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dynamics.frf.hammer.hit import Baseline, Hit, noise_of
 from dynamics.frf.hammer.record import Fault, Finding, HammerRecord
+from dynamics.frf.hammer.written_number import written
 
 #: expected number of chance events in a record below which a coincidence is taken as a fault
 _CHANCE = 1e-5
@@ -216,9 +217,9 @@ def _dropout(channel: _Channel) -> tuple[Fault, str] | None:
     if excess[sample] <= 1.0:
         return None
     return "dropout", (
-        f"{channel.name} jumps to {signal[sample]:.4g} {channel.unit} at {channel.when(sample)}, "
-        f"{abs(distance[sample]):.3g} {channel.unit} off the curve through its neighbours "
-        f"({abs(distance[sample]) / noise:.0f} times its noise)"
+        f"{channel.name} jumps to {written(signal[sample], 4)} {channel.unit} "
+        f"at {channel.when(sample)}, {written(abs(distance[sample]))} {channel.unit} off the curve "
+        f"through its neighbours ({abs(distance[sample]) / noise:.0f} times its noise)"
     )
 
 

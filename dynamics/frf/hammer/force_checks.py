@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from dynamics.frf.hammer.hit import Hit
 from dynamics.frf.hammer.record import Finding, HammerRecord
+from dynamics.frf.hammer.written_number import written
 
 #: a second blow counts from this share of the first
 _SECOND_BLOW_SHARE = 0.01
@@ -90,7 +91,7 @@ def _drift(record: HammerRecord, hit: Hit, baseline: NDArray[np.float64]) -> Fin
     return Finding(
         record.name,
         "drift",
-        f"force baseline moves by {hit.polarity * baseline[worst]:.3g} N "
+        f"force baseline moves by {written(hit.polarity * baseline[worst])} N "
         f"({abs(baseline[worst]) / hit.amplitude:.1%} of the peak) by {when:.0f} ms "
         "though no force acts",
     )
@@ -107,7 +108,7 @@ def _notch(record: HammerRecord, hit: Hit, force: NDArray[np.float64]) -> Findin
     return Finding(
         record.name,
         "double_hit",
-        f"the force has two humps, {blow[first]:.3g} N and {blow[second]:.3g} N, "
+        f"the force has two humps, {written(blow[first])} N and {written(blow[second])} N, "
         f"{(second - first) / record.sampling_rate * 1e3:.2f} ms apart within one blow",
     )
 
@@ -137,8 +138,9 @@ def _second_blow(
     return Finding(
         record.name,
         "double_hit",
-        f"a second blow of {height[sample]:.3g} N ({height[sample] / hit.amplitude:.1%} of the "
-        f"first) {abs(delay):.1f} ms {'after' if delay > 0 else 'before'} the main one",
+        f"a second blow of {written(height[sample])} N "
+        f"({height[sample] / hit.amplitude:.1%} of the first) "
+        f"{abs(delay):.1f} ms {'after' if delay > 0 else 'before'} the main one",
     )
 
 
@@ -154,7 +156,7 @@ def _spike(record: HammerRecord, hit: Hit, free: NDArray[np.float64]) -> Finding
     return Finding(
         record.name,
         "dropout",
-        f"force jumps by {hit.polarity * free[sample]:.3g} N "
+        f"force jumps by {written(hit.polarity * free[sample])} N "
         f"({abs(free[sample]) / hit.amplitude:.1%} of the peak) at {when:.2f} ms",
     )
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from dynamics.frf.container import MeasurementError
 from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.written_number import written
 
 #: median absolute deviation of a normal distribution, in standard deviations
 NORMAL_MAD = 0.6745
@@ -52,8 +53,8 @@ def locate_hit(record: HammerRecord) -> Hit:
     noise = noise_of(record.force)
     if amplitude == 0.0 or amplitude < 12.0 * noise:
         raise MeasurementError(
-            f"{record.name}: no hit; the force stays within {amplitude:.3g} N and its noise is "
-            f"{noise:.2g} N"
+            f"{record.name}: no hit; the force stays within {written(amplitude)} N and its "
+            f"noise is {written(noise, 2)} N"
         )
     polarity = 1 if force[peak] > 0 else -1
     threshold = max(4.0 * noise, 0.01 * amplitude)

@@ -6,6 +6,7 @@ import scipy
 from dynamics.frf.hammer.comparison import RecordAssessment
 from dynamics.frf.hammer.consensus import AlignedSet
 from dynamics.frf.hammer.record import Fault, Finding, HammerRecord
+from dynamics.frf.hammer.written_number import written
 
 #: factors by which a wrong unit or sensitivity scales a channel
 _UNIT_SLIPS = {
@@ -78,12 +79,14 @@ def _gain_or_delay(record: HammerRecord, assessment: RecordAssessment) -> tuple[
             f"{'late' if delay > 0 else 'early'} against the other records{also}"
         )
     if gain < 0.0:
-        size = f", and {abs(gain):.3g} times as large" if abs(abs(gain) - 1) > limits.gain else ""
+        size = (
+            f", and {written(abs(gain))} times as large" if abs(abs(gain) - 1) > limits.gain else ""
+        )
         return "wrong_polarity", (
             f"response per force has the opposite sign to the other records{size}"
         )
     return "wrong_gain", (
-        f"response per force is {gain:.3g} times that of the other records{_unit_slip(gain)}"
+        f"response per force is {written(gain)} times that of the other records{_unit_slip(gain)}"
     )
 
 
@@ -105,7 +108,7 @@ def _local(
     energy = float(square.sum())
     sample = near.start + int(np.argmax(square))
     after = (sample - aligned.lead) / aligned.sampling_rate * 1e3
-    what = f"{excess.size:.3g} {record.response_unit} {after:.1f} ms after the hit"
+    what = f"{written(excess.size)} {record.response_unit} {after:.1f} ms after the hit"
     share = f"{excess.size / np.max(np.abs(response)):.1%} of the peak"
     if float(np.max(scipy.ndimage.uniform_filter1d(square, 6))) * 6.0 > 0.7 * energy:
         return "dropout", f"the response jumps by {what} ({share}) against the other records"

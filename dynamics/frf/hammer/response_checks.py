@@ -5,6 +5,7 @@ import numpy as np
 from dynamics.frf.hammer.force_checks import DRIFT_DEVIATIONS, DRIFT_SHARE, block_medians
 from dynamics.frf.hammer.hit import Hit
 from dynamics.frf.hammer.record import Finding, HammerRecord
+from dynamics.frf.hammer.written_number import written
 
 #: peak of the response over its noise before the blow, below which it does not answer
 _LEAST_PEAK_OVER_NOISE = 8.0
@@ -73,8 +74,8 @@ def _no_answer(record: HammerRecord, hit: Hit) -> Finding | None:
     return Finding(
         record.name,
         "no_coherence",
-        f"the response does not answer the blow: its peak of {peak:.3g} {record.response_unit} is "
-        f"{peak / noise:.1f} times its noise before it",
+        f"the response does not answer the blow: its peak of {written(peak)} "
+        f"{record.response_unit} is {peak / noise:.1f} times its noise before it",
     )
 
 
@@ -99,6 +100,6 @@ def _drift(record: HammerRecord, hit: Hit) -> Finding | None:
     return Finding(
         record.name,
         "drift",
-        f"response baseline stands {means[worst]:.3g} {record.response_unit} "
+        f"response baseline stands {written(means[worst])} {record.response_unit} "
         f"({abs(means[worst]) / peak:.1%} of the peak) off its rest level at {when:.0f} ms",
     )

@@ -78,6 +78,22 @@ def test_hammer_files_become_a_case_and_its_modes(tapped, tmp_path):
     assert tapped.session.name == tapped.choice.value == "case.toml"
 
 
+def test_a_new_case_is_titled_by_its_answers_and_offers_the_materials(tapped, tmp_path):
+    new = tapped.case.new
+    offered = new.answers["material"]
+    assert {"Al7075-T6", "titanium, alpha and beta alloy, hardened (VDI 37)"} <= set(
+        offered.options
+    )
+    tapped.tap_test.put_into_case()
+    # free text stays possible
+    for name, answer in {**ANSWERS, "material": "700 MPa, 210 MPa"}.items():
+        new.answers[name].value = answer
+    new.create()
+    case = chatter.load(tmp_path / "case.toml")
+    assert case.title == "End mill 12 mm, 4 teeth, Ktc and Krc 700 MPa, 210 MPa"
+    assert case.material.values["Ktc"] == pytest.approx(700e6)
+
+
 def test_files_of_the_direction_before_do_not_go_into_the_next(tapped, tmp_path, taps):
     """The second set of records took those of the first along that it had no names for."""
     view = tapped.tap_test

@@ -17,6 +17,7 @@ EXAMPLES = {name: question.example for name, question in QUESTIONS.items()}
 def test_the_examples_of_the_questions_make_a_case():
     case = loads(first_case(EXAMPLES))
     assert (case.tool.teeth, case.tool.diameter) == (4, pytest.approx(12e-3))
+    assert case.title == "End mill 12 mm, 4 teeth, Al7075-T6"
     assert case.cut.axial_depth == pytest.approx(1e-3)
     assert case.cut.radial_depth == pytest.approx(6e-3)
     assert [mode.direction for mode in case.structure.mode] == [(1, 0, 0), (0, 1, 0)]
@@ -88,3 +89,10 @@ def test_doctor():
     shown = chatter_command("doctor")
     assert shown.exit_code == 0, shown.output
     assert shown.stdout.count("right") == 3
+
+
+def test_the_version_is_printed():
+    from chatter import __version__
+
+    result = chatter_command("--version")
+    assert (result.exit_code, result.stdout.strip()) == (0, f"chatter {__version__}")
