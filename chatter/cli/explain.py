@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from chatter.cli import options
-from chatter.cli.progress import progress_bar, report_stage
+from chatter.cli.progress import RunningWork, progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.formatting import signed
@@ -28,6 +28,9 @@ DeclaredCase = Annotated[
     Path | None, typer.Option("--case", help="Case to judge instead of the one declared.")
 ]
 
+#: share of the work from which on no effect is added any more, so that the rest can be told
+_EFFECTS_FOUND = 0.85
+
 
 def explain(
     measurement: MeasurementPath,
@@ -43,9 +46,18 @@ def explain(
     declared = read_measurement(measurement, case)
     folder = options.output_folder(out, measurement.resolve().stem)
     with progress_bar("reading the signals") as work:
-        result = run_explain(declared, progress=partial(report_stage, work), folder=folder)
+        result = run_explain(declared, progress=partial(_report_step, work), folder=folder)
     options.print_coefficients(declared.case)
     present(result, folder, json=json, words=_print_explanation)
+
+
+def _report_step(work: RunningWork, description: str, share: float) -> None:
+    """Report a step; its share of the whole only once it is known how many effects there are."""
+    if share >= _EFFECTS_FOUND:
+        report_stage(work, description, share)
+        return
+    work.stage(description)
+    work(0, 1)
 
 
 def print_checks(checks: list[dict[str, str]]) -> None:

@@ -25,7 +25,12 @@ from chatter.explain.records.orientation import oriented
 from chatter.explain.records.slow_channels import POWER, power_channel, with_power, with_torques
 from chatter.explain.records.spindle import TachoReading, speed_by_repetition, tacho_reading
 from chatter.explain.records.stages import Stages, stages_of
-from chatter.explain.records.steady_cut import revolutions_to_settle, steady_cut
+from chatter.explain.records.steady_cut import (
+    REVOLUTIONS,
+    change_left,
+    revolutions_to_settle,
+    steady_cut,
+)
 from chatter.explain.records.steady_record import SteadyRecord, smallest_symmetry
 
 Array = NDArray[np.float64]
@@ -34,6 +39,8 @@ Array = NDArray[np.float64]
 _LEAST_NOISE = 5e-3
 #: unsteadiness and drift of a run that is no settled cut, and times those of the others
 _UNSTEADY, _DRIFTING, _MORE_UNSTEADY = 0.06, 0.04, 4.0
+#: change, over the signal, that is left when a record ends, from which it need not have settled
+_LEFT = 0.03
 #: share of the records that must be predicted for an orientation, and by which it beats others
 _LEAST_SHARE, _CLEARER = 0.3, 0.05
 #: length of the mean of what a tacho tells against what the cut tells, from which they agree
@@ -49,6 +56,7 @@ class _Settled:
     stages: Stages
     tacho: TachoReading | None
     description: str
+    revolutions: int  # of the cut in the record
     idle: float | None = None  # power of the spindle in the air, W
 
     def recorded(self, names: Sequence[str]) -> Recorded:
@@ -73,6 +81,8 @@ def settled_records(
     findings: list[SignalFinding] = []
     settled = [_settled(measurement, run, record, channels) for run in measurement.runs]
     settled, new = _without_unsteady(settled)
+    findings += new
+    settled, new = _without_slow(settled)
     findings += new
     unknown = {k: v for k, v in vectors.items() if v.direction is None or not v.has_sign}
     if unknown and settled:
@@ -176,7 +186,9 @@ def _settled(
     if idle is None and power is not None and air.stop >= _LEAST_AIR:
         idle = float(np.mean(run.signals[power][air]))
     cut_out = replace(cut_out, overrides=overrides)
-    return _Settled(cut_out, case, stages, tacho, description, idle)
+    step = float(time[-1] - time[0]) / (time.size - 1)
+    revolutions = int((stages.leave - stages.entry) * step * speed / (2.0 * math.pi))
+    return _Settled(cut_out, case, stages, tacho, description, revolutions, idle)
 
 
 def _speed(
@@ -227,6 +239,32 @@ def _without_unsteady(settled: Sequence[_Settled]) -> tuple[list[_Settled], list
         words = f"{one.run.name}: {words}, of the other runs {others}"
         found.append(SignalFinding(RUN, one.run.name, "", words))
     return kept, found
+
+
+def _without_slow(settled: Sequence[_Settled]) -> tuple[list[_Settled], list[SignalFinding]]:
+    """Runs that settle within their records by the case as declared, where these are the most.
+
+    At the limit of stability transients last longer than a record and hardly change within it, and
+    small differences of the case are large ones of the settled cut.
+    """
+    slow = [one for one in settled if _settles_too_slowly(one)]
+    if 2 * len(slow) >= len(settled):
+        return list(settled), []
+    found = [
+        SignalFinding(
+            RUN, one.run.name, "",
+            f"{one.run.name}: by the case as declared the cut is so near to its stability limit "
+            f"that it does not settle within the {one.revolutions} revolutions of the record: "
+            "whether it had settled cannot be told",
+        )
+        for one in slow
+    ]  # fmt: skip
+    return [one for one in settled if one not in slow], found
+
+
+def _settles_too_slowly(one: _Settled) -> bool:
+    longest = REVOLUTIONS[-1]
+    return one.revolutions < longest and change_left(one.case, one.revolutions) > _LEFT
 
 
 def _with_orientation(

@@ -77,6 +77,14 @@ def revolutions_to_settle(case: Case) -> int:
     return REVOLUTIONS[-1]
 
 
+def change_left(case: Case, revolutions: int) -> float:
+    """Change of a cut from some revolutions after rest until it is settled, over its size."""
+    scaled = _scaled(_revolutions(case, REVOLUTIONS[-1]))
+    later = scaled[min(revolutions, len(scaled) - 1)]
+    size = float(np.linalg.norm(scaled[-1])) + 1e-300
+    return float(np.linalg.norm(later - scaled[-1])) / size
+
+
 def _revolutions(case: Case, count: int) -> Array:
     """Force, displacement and torque (count, points, 7) of revolutions from rest."""
     if case.cut.speed_variation is not None:

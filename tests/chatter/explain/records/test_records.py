@@ -279,6 +279,28 @@ def test_a_run_that_chatters_is_set_aside(case, cut_off, tmp_path):
     assert [one.run for one in usable.findings if one.severity == RUN] == ["run3.csv"]
 
 
+@pytest.mark.parametrize(("kept", "turns", "left_out"), [(45.6, 12, True), (60.6, 45, False)])
+def test_a_cut_near_its_limit_is_set_aside_where_its_record_is_short(
+    case, tmp_path, kept, turns, left_out
+):
+    """Of its transient a tenth is left 12 revolutions after rest, a hundredth after 45."""
+    runs, depths = [], (0.6e-3, 0.5e-3, 0.85 * 2.56e-3)
+    for number, depth in enumerate(depths):
+        speed = 2000.0 * TURN / 60.0
+        cut = Cut(speed, 0.08e-3, depth, 6e-3, *arc_of("down", 6e-3, 10e-3), 0.0)
+        signals = run(plant(), cut, (kept + turns) * TURN / speed)
+        first = int(kept * TURN / speed * SAMPLING)
+        rows = as_in_the_case(signals.channels[:, first:])
+        rows["time"] = signals.time[first:] - signals.time[first]
+        overrides = {"cut.spindle_speed": "2000 rpm", "cut.axial_depth": depth}
+        runs.append(Run(f"run{number + 1}.csv", overrides, rows))
+    record = RecordDescription("cut", "unknown", 0.005)
+    made = Measurement("milling", "records", tmp_path, case, tuple(runs), {}, record=record)
+    found = [one for one in checked(made).findings if one.severity == RUN]
+    assert [one.run for one in found] == (["run3.csv"] if left_out else [])
+    assert all("stability limit" in one.description for one in found)
+
+
 def test_settled_cut_is_extrapolated(case):
     """From a dozen revolutions as from a hundred, in a cut that settles slowly."""
     slow = case.patch({"cut.spindle_speed": "12000 rpm", "structure.mode[0].damping": 0.01})
