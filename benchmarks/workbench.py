@@ -36,9 +36,9 @@ def two_modes_a_direction() -> chatter.Case:
     return chatter.load(CASE).patch({"structure.mode": modes})
 
 
-def memory() -> float:
-    """Resident memory of this process, MB."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
+def memory(process: int | str = "self") -> float:
+    """Resident memory of a process, MB."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
     return pages * resource.getpagesize() / 1e6
 
 

@@ -1,9 +1,10 @@
-"""Slider to drawn diagram of the workbench in headless chromium.
+"""Slider to drawn diagram of the workbench in headless chromium, and memory over many moves.
 
-    python -m benchmarks.workbench_in_browser [--timed 200]
+    python -m benchmarks.workbench_in_browser [--timed 200] [--moves 10000]
 
 Two modes in each direction, collocation; `chatter app` runs in a process of its own, and the time
-runs from the new value of the slider in the browser until its diagram is painted.
+runs from the new value of the slider in the browser until its diagram is painted. Memory is that of
+the process of the server and of the heap, nodes and listeners of the page, garbage collected.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from benchmarks.workbench import two_modes_a_direction
-from tests.chatter.app.browser_tab import browser, tab_of
+from benchmarks.workbench import memory, two_modes_a_direction
+from tests.chatter.app.browser_tab import Tab, browser, tab_of
+
+#: times that memory is looked at over the moves
+_LOOKS = 10
 
 #: milliseconds from a value of the slider until its diagram is painted
 TIME = """
@@ -46,27 +50,46 @@ new Promise(resolve => {
 
 
 @contextmanager
-def served(folder: Path) -> Iterator[str]:
-    """Address of `chatter app` on a folder."""
+def served(folder: Path) -> Iterator[tuple[str, int]]:
+    """Address of `chatter app` on a folder, and the number of its process."""
     command = [sys.executable, "-m", "chatter", "app", str(folder), "--no-browser"]
     serving = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert serving.stdout is not None
-        yield next(word for line in serving.stdout for word in line.split() if "http://" in word)
+        words = (word for line in serving.stdout for word in line.split())
+        yield next(word for word in words if "http://" in word), serving.pid
     finally:
         serving.terminate()
         serving.wait()
+
+
+def time_of(tab: Tab, number: int) -> float:
+    """Time of a move of the slider, ms."""
+    return tab.value(TIME.replace("VALUE", json.dumps(600.0 + 5.625 * (number % 40 - 20))))
+
+
+def print_memory(tab: Tab, server: int, moves: int) -> None:
+    """Print what the server and the page take."""
+    tab.command("HeapProfiler.collectGarbage")
+    heap = tab.command("Runtime.getHeapUsage")["usedSize"] / 1e6
+    counted = tab.command("Memory.getDOMCounters")
+    print(
+        f"  {moves} moves: server {memory(server):.0f} MB; page {heap:.1f} MB, "
+        f"{counted['nodes']} nodes, {counted['jsEventListeners']} listeners",
+        flush=True,
+    )
 
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--timed", type=int, default=200)
+    parser.add_argument("--moves", type=int, default=0)
     given = parser.parse_args()
     folder = Path(tempfile.mkdtemp())
     (folder / "case.toml").write_text(two_modes_a_direction().to_toml(), encoding="utf-8")
     (folder / "profile").mkdir()
-    with served(folder) as url, browser(folder / "profile") as port:
+    with served(folder) as (url, server), browser(folder / "profile") as port:
         tab = tab_of(port)
         tab.open(url)
         tab.wait_for_text("chatter lobes case.toml")
@@ -74,10 +97,13 @@ def main() -> None:
             "[...Bokeh.documents[0]._all_models.values()].some(one => one.data"
             " && 'stable' in one.data && one.data.stable.length)"
         )
-        walls = [
-            tab.value(TIME.replace("VALUE", json.dumps(600.0 + 5.625 * (number % 40 - 20))))
-            for number in range(given.timed)
-        ]
+        walls = [time_of(tab, number) for number in range(given.timed)]
+        for number in range(given.moves):
+            if number % max(1, given.moves // _LOOKS) == 0:
+                print_memory(tab, server, number)
+            time_of(tab, number)
+        if given.moves:
+            print_memory(tab, server, given.moves)
         tab.close()
     shutil.rmtree(folder, ignore_errors=True)
     print(

@@ -66,8 +66,9 @@ def sheet(
     """Cuts worth making of one or several cases, with limits and margins.
 
     For each case: the cut as stated, the best pockets of its stability diagram, and the depth that
-    any speed of the range allows; depths but the stated one keep 15 % of the limit in hand. Where
-    the stated cut has less, a variation of the spindle speed is tried.
+    any speed of the range allows; depths but the stated one keep 15 % of the limit in hand, or what
+    edge forces may take of it. Where the stated cut has less than 15 %, a variation of the spindle
+    speed is tried.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from chatter.description.material_words import coefficients_in_words
 from chatter.operator_sheet.workbook import rows_of
 from chatter.plots import style
 from chatter.plots.stability_diagram import draw_limits
+from chatter.stability.pockets import SPEED_MARGIN
 
 if TYPE_CHECKING:
     from chatter.operator_sheet.cuts import CaseCuts
@@ -102,10 +103,13 @@ def _set_up(one: CaseCuts) -> str:
 
 
 def _remarks(one: CaseCuts) -> str:
-    lines = [
-        "An empty limit: none was found up to the depth that was searched. "
-        "Depths but the stated one keep 15 % of the lowest limit within 1.5 % of the speed in hand."
-    ]
+    kept = (
+        f"Depths but the stated one keep {one.diagram.depth_margin:.0%} of the lowest limit within "
+        f"{SPEED_MARGIN:.1%} of the speed in hand."
+    )
+    if one.diagram.why_no_pocket:
+        kept = f"No other depth is stated: {one.diagram.why_no_pocket}."
+    lines = [f"An empty limit: none was found up to the depth that was searched. {kept}"]
     variation = one.variation
     if variation is not None:
         limit = "no limit" if variation.limit is None else f"{1e3 * variation.limit:.3g} mm"

@@ -25,6 +25,8 @@ from chatter.description.errors import InputError
 from chatter.first_steps.first_case import QUESTIONS, Question, first_case
 from cutting.material.table import MATERIALS
 
+#: the table of materials is longer than a window
+_BOUNDED_LIST = ".bk-menu {max-height: 300px; overflow-y: auto}"
 _ERROR = {"color": "#c62828", "font-size": "12px"}
 _PATH = re.compile(r"^([A-Za-z_][\w.\[\]-]*): (.*)$", re.DOTALL)
 _FIRST = ("tool", "material", "cut", "structure")
@@ -55,10 +57,10 @@ class CaseView:
         self.message = wrapped_text(width=560, styles=_ERROR)
         self.done = pn.pane.Str("", width=560)
         self.call = wrapped_text(width=560, styles=CODE)
-        self.save_button = pn.widgets.Button(label="Save", color="primary", width=110)
+        self.save_button = pn.widgets.Button(label="Save", color="primary", width=110, align="end")
         self.save_name = pn.widgets.TextInput(label="Save as", placeholder="case-2.toml", width=200)
         self.section = pn.widgets.Select(label="Add a section", options=[], width=200)
-        self.add_button = pn.widgets.Button(label="Add", width=80)
+        self.add_button = pn.widgets.Button(label="Add", width=80, align="end")
         self._form = pn.Column(width=560)
         self.new = NewCase(session, self._made)
         self.text.param.watch(lambda event: self._typed_text(event.new), "value")
@@ -73,7 +75,7 @@ class CaseView:
             self.new,
             pn.Row(
                 pn.Column(
-                    pn.Row(self.save_button, self.save_name, align="end"),
+                    pn.Row(self.save_name, self.save_button),
                     self.done,
                     pn.Row(self.section, self.add_button),
                     self._form,
@@ -242,7 +244,7 @@ class NewCase:
         self._session, self._made = session, made
         self.answers = {name: _answer(name, one) for name, one in QUESTIONS.items()}
         self.name = pn.widgets.TextInput(label="File", value="case.toml", width=200)
-        self.make = pn.widgets.Button(label="Make the case", color="primary")
+        self.make = pn.widgets.Button(label="Make the case", color="primary", align="end")
         self.message = wrapped_text(width=860, styles=_ERROR)
         self._card = pn.Card(
             pn.FlexBox(*self.answers.values(), min_width=860),
@@ -299,5 +301,5 @@ def _answer(name: str, question: Question) -> pn.widgets.Widget:
         return pn.widgets.TextInput(**given)
     return pn.widgets.AutocompleteInput(
         options=list(MATERIALS), restrict=False, min_characters=0,
-        case_sensitive=False, search_strategy="includes", **given,
+        case_sensitive=False, search_strategy="includes", stylesheets=[_BOUNDED_LIST], **given,
     )  # fmt: skip

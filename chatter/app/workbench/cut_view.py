@@ -81,6 +81,8 @@ class CutView:
         self.workpiece = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
         self.tool = ColumnDataSource({"x": [], "y": []})
         self._figures = self._make_figures()
+        # nothing is shown before a cut was simulated, and no workpiece where none is carved
+        self._pictures, self._carved = pn.Column(visible=False), pn.Column(visible=False)
         self.call, self._files, self._before = pn.Column(), pn.FlexBox(min_width=860), pn.Column()
         self.computations = Computations(self._show_message)
         self.start_button.on_click(lambda _: self.start())
@@ -93,17 +95,21 @@ class CutView:
         force, moved, lines, section, workpiece = (
             picture(drawn, name) for name, drawn in self._figures.items()
         )
-        return pn.Column(
-            pn.Row(self.start_button, self.carve, self.cancel_button, self.progress),
-            self.message,
-            self.call,
+        self._carved = workpiece
+        self._pictures.objects = [
             pn.Row(self.player, self.clock),
             pn.Row(pn.Column(force, moved, lines), pn.Column(workpiece, section)),
             pn.Row(self.surface.__panel__(),
                    pn.Column(self.summary, pn.Row(*self.tables), self.sound, self.sound_file)),
+        ]  # fmt: skip
+        return pn.Column(
+            pn.Row(self.start_button, self.carve, self.cancel_button, self.progress),
+            self.message,
+            self.call,
+            self._pictures,
             self._files,
             self._before,
-        )  # fmt: skip
+        )
 
     def refresh(self) -> None:
         """Show what was simulated of the open case before, where nothing newer is shown."""
@@ -194,6 +200,7 @@ class CutView:
 
     def _draw(self, result: SimulationResult, removed: Any, folder: Any) -> None:
         self.result, self._removed = result, removed
+        self._pictures.visible, self._carved.visible = True, removed is not None
         self._before.objects = []
         told = result.summary()
         self.message.object = "\n".join([f"{told['verdict']}: {told['reason']}", *result.notes])
@@ -244,9 +251,7 @@ class CutView:
     def _draw_workpiece(self, now: float) -> None:
         if self._removed is None:
             self.workpiece.data = {name: [] for name in ("image", "x", "y", "dw", "dh")}
-            self._figures["workpiece"].title.text = "workpiece: not carved"
             return
-        self._figures["workpiece"].title.text = ""
         (x0, y0), (x1, y1), times = self._removed
         self.workpiece.data = {
             "image": [(times > now).astype(np.uint8)],
@@ -272,9 +277,9 @@ class CutView:
 
     def _make_figures(self) -> dict[str, Any]:
         force = _figure(620, 230, "time [s]", "force on the tool [N]")
-        motion = _figure(620, 210, "time [s]", "displacement [um]", x_range=force.x_range)
-        lines = _figure(620, 230, "frequency [Hz]", "amplitude [um]", y_axis_type="log")
-        section = _figure(430, 300, "x [um]", "y [um]", match_aspect=True, x_range=None,
+        motion = _figure(620, 210, "time [s]", "displacement [µm]", x_range=force.x_range)
+        lines = _figure(620, 230, "frequency [Hz]", "amplitude [µm]", y_axis_type="log")
+        section = _figure(430, 300, "x [µm]", "y [µm]", match_aspect=True, x_range=None,
                           y_range=None)  # fmt: skip
         workpiece = _figure(430, 330, "x [mm]", "y [mm]")
         for axis, colour in zip(_AXES, _COLOURS, strict=True):
@@ -288,7 +293,6 @@ class CutView:
         workpiece.image("image", "x", "y", "dw", "dh", source=self.workpiece,
                         palette=["#FFFFFF", "#9FB4C0"])  # fmt: skip
         workpiece.line("x", "y", source=self.tool, color="#D55E00", legend_label="tool")
-        workpiece.title.text = "workpiece: not carved"
         for drawn in (force, motion, lines, section, workpiece):
             legend_above(drawn)
         return {"force": force, "motion": motion, "spectrum": lines, "section": section,

@@ -78,7 +78,7 @@ class StabilityView:
         self.motion = ColumnDataSource({"revolution": [], "low": [], "high": []})
         self.message, self.verdict = _text(), _text()
         self.same_call = wrapped_text(width=_WIDTH, styles=CODE)
-        self.cancel = pn.widgets.Button(label="Cancel")
+        self.cancel = pn.widgets.Button(label="Stop")
         self.table, self.workbook = table_buttons(self.limits, "lobes")
         self.reset = pn.widgets.Button(label="Reset")
         self.computations = Computations(lambda text: self._later(self.message, text))

@@ -29,6 +29,10 @@ from chatter.studies.modal_test import ModalTest
 
 _TOOLS = "pan,box_zoom,wheel_zoom,reset"
 _WIDTH = 600
+_FIRST_STEP = (
+    "Drop hammer records (force and response of each blow) or FRF files of one direction, then "
+    "those of the next. Without any, begin in Case."
+)
 _HEADINGS = ("frequency [Hz]", "damping ratio", "mass [kg]", "fit error", "remark")
 #: poles that belong to one mode lie this close, as a share of the frequency
 _SAME_POLE = 0.005
@@ -72,7 +76,7 @@ class TapTestView:
                                            disabled=True)  # fmt: skip
         self.automatic = pn.widgets.Button(label="Poles found automatically")
         self.picked = pn.widgets.Button(label="Fit the picked poles")
-        self.message = wrapped_text()
+        self.message = wrapped_text(_FIRST_STEP)
         self.same_call = pn.pane.Str("", width=900, styles=CODE)
         self.modes = pn.pane.HTML("", width=700)
         self.tables = table_buttons(self.mode_table, "modes")
@@ -86,6 +90,7 @@ class TapTestView:
         self.diagram = ColumnDataSource({"f": [], "order": [], "damping": [], "colour": []})
         self.chosen = ColumnDataSource({"xs": [], "ys": []})
         self._figures = self._make_figures()
+        self._results = self._make_results()
         self.computations = Computations(lambda text: self._later(text))
         self.into_case.on_click(lambda _: self.put_into_case())
         self.automatic.on_click(lambda _: self.fit())
@@ -95,10 +100,16 @@ class TapTestView:
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
-        magnitude, phase, coherence, stabilisation = self._figures
         return pn.Column(
             pn.Row(self.upload, pn.Column(pn.Row(self.direction, self.side), self.columns)),
             self.message,
+            self._results,
+        )
+
+    def _make_results(self) -> pn.Column:
+        """Pictures, modes and records; nothing is shown before the first fit."""
+        magnitude, phase, coherence, stabilisation = self._figures
+        return pn.Column(
             pn.Row(
                 pn.Column(
                     picture(magnitude, "frf"), picture(phase, "phase"),
@@ -116,6 +127,7 @@ class TapTestView:
             ),
             self.same_call,
             self._files,
+            visible=False,
         )  # fmt: skip
 
     def take(self, files: Mapping[str, bytes]) -> None:
@@ -286,13 +298,14 @@ class TapTestView:
             self._show(lambda: setattr(self.message, "object", told))
             return
         go_on(0, 0)
-        folder = self._session.results(f"modes-{self.direction.value}")
+        folder = self._session.results(f"modes-{arguments['direction']}")
         test.save(folder)
         go_on(0, 0)
         self._show(lambda: self._draw(test, arguments, folder))
 
     def _draw(self, test: ModalTest, arguments: Mapping[str, Any], folder: Path) -> None:
         self.test = test
+        self._results.visible = True
         self._draw_functions(test)
         self._draw_diagram(test)
         self._list_records(test)

@@ -52,7 +52,7 @@ class SpindleHarmonics:
         highest = int(2.0 * math.pi / (a_sample * _SAMPLES_A_CYCLE))
         count = max(1, min(highest, self.samples // (2 * _SAMPLES_A_HARMONIC)))
         self.orders = np.arange(1, count + 1)
-        self.turns = turns_of(angle, count)
+        self.turns = phases_of(angle, count)
         gram = _gram(self.turns.powers_summed(), count)
         # of less than a revolution harmonics are collinear
         gram[np.diag_indices_from(gram)] += _RIDGE * self.samples
@@ -85,7 +85,7 @@ class SpindleHarmonics:
         return lines / np.sum(self.window**2)
 
 
-class Turns:
+class Phases:
     """Powers 1 to m of turns exp(i angle) (n,)."""
 
     def __init__(self, angle: Array, count: int) -> None:
@@ -109,7 +109,7 @@ class Turns:
         return amplitudes @ self._powers
 
 
-class EvenTurns:
+class EvenPhases:
     """The same where the spindle turns by one angle from sample to sample.
 
     Sums of powers are geometric series, products with values chirp z-transforms (Rabiner, Schafer
@@ -141,13 +141,13 @@ class EvenTurns:
         return self._to_samples(self._shift * np.concatenate([[0.0], amplitudes]))
 
 
-def turns_of(angle: Array, count: int) -> Turns | EvenTurns:
-    """Turns at angles (n,), rad, of a spindle that turns evenly or not."""
+def phases_of(angle: Array, count: int) -> Phases | EvenPhases:
+    """Phases at angles (n,), rad, of a spindle that turns evenly or not."""
     step, start = np.polynomial.polynomial.polyfit(np.arange(angle.size), angle, 1)[::-1]
     even = start + step * np.arange(angle.size)
     if count * np.max(np.abs(angle - even)) < _EVEN:
-        return EvenTurns(start, step, angle.size, count)
-    return Turns(angle, count)
+        return EvenPhases(start, step, angle.size, count)
+    return Phases(angle, count)
 
 
 def _gram(sums: Complex, count: int) -> Array:

@@ -33,8 +33,10 @@ def workbench(tmp_path):
 def test_a_cut_is_simulated_and_heard(workbench):
     view = workbench.cut
     workbench.session.set_values([("cut.axial_depth", "0.5 mm")])
+    assert not view._pictures.visible  # axes of nothing
     view.start()
     assert view.computations.wait(PATIENCE)
+    assert (view._pictures.visible, view._carved.visible) == (True, False)
     assert view.message.object.startswith("stable")
     told = json.loads((workbench.session.results("simulate") / "summary.json").read_text())
     # the peak of the summary is that of the settled cut

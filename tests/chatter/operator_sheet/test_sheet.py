@@ -9,6 +9,7 @@ import pytest
 import chatter
 from chatter.description.errors import InputError
 from chatter.operator_sheet.variation import variation_that_helps
+from chatter.plots.sheet import pages
 from tests.command_line import chatter_command
 from tests.places import EXAMPLES
 
@@ -130,3 +131,11 @@ def _numbers(figure):
     """Numbers that mark pockets in a picture."""
     drawn = [text.get_text() for axes in figure.axes for text in axes.texts]
     return [text for text in drawn if text.isdigit()]
+
+
+def test_the_page_says_how_much_its_depths_keep_in_hand(found):
+    """It said 15 % where the table kept 18 for edge forces."""
+    for figure, one in zip(pages(found)[1:], found.cases, strict=True):
+        text = " ".join(part.get_text() for axes in figure.axes for part in axes.texts)
+        kept = 1.0 - one.cuts[-1].axial_depth / one.cuts[-1].limit
+        assert f"keep {round(100.0 * kept)}% of the lowest limit" in " ".join(text.split())

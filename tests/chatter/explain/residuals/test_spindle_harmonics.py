@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.explain.residuals.spindle_harmonics import EvenTurns, Turns, turns_of
+from chatter.explain.residuals.spindle_harmonics import EvenPhases, Turns, phases_of
 
 COUNT = 40
 STEP = 0.041  # rad a sample
@@ -20,7 +20,7 @@ def test_sums_are_those_written_out(uneven):
     angle, rng = angles(uneven), np.random.default_rng(3)
     values = rng.normal(size=angle.size)
     amplitudes = rng.normal(size=COUNT) + 1j * rng.normal(size=COUNT)
-    turns = turns_of(angle, COUNT)
+    turns = phases_of(angle, COUNT)
     powers = np.exp(1j * np.outer(np.arange(2 * COUNT + 1), angle))
     of_orders = powers[1 : COUNT + 1]
     np.testing.assert_allclose(turns.powers_summed(), powers.sum(axis=1), atol=1e-8 * angle.size)
@@ -28,6 +28,6 @@ def test_sums_are_those_written_out(uneven):
     np.testing.assert_allclose(turns.combined(amplitudes), amplitudes @ of_orders, atol=1e-8)
 
 
-@pytest.mark.parametrize(("uneven", "kind"), [(0.0, EvenTurns), (1e-5, EvenTurns), (1e-3, Turns)])
+@pytest.mark.parametrize(("uneven", "kind"), [(0.0, EvenPhases), (1e-5, EvenPhases), (1e-3, Turns)])
 def test_a_spindle_turns_evenly_where_no_harmonic_shows_otherwise(uneven, kind):
-    assert type(turns_of(angles(uneven), COUNT)) is kind
+    assert type(phases_of(angles(uneven), COUNT)) is kind
