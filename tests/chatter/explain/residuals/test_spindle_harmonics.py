@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.explain.residuals.spindle_harmonics import EvenPhases, Turns, phases_of
+from chatter.explain.residuals.spindle_harmonics import EvenPhases, Phases, phases_of
 
 COUNT = 40
 STEP = 0.041  # rad a sample
@@ -28,6 +28,8 @@ def test_sums_are_those_written_out(uneven):
     np.testing.assert_allclose(turns.combined(amplitudes), amplitudes @ of_orders, atol=1e-8)
 
 
-@pytest.mark.parametrize(("uneven", "kind"), [(0.0, EvenPhases), (1e-5, EvenPhases), (1e-3, Turns)])
+@pytest.mark.parametrize(
+    ("uneven", "kind"), [(0.0, EvenPhases), (1e-5, EvenPhases), (1e-3, Phases)]
+)
 def test_a_spindle_turns_evenly_where_no_harmonic_shows_otherwise(uneven, kind):
     assert type(phases_of(angles(uneven), COUNT)) is kind
