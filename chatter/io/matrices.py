@@ -162,7 +162,7 @@ def _stored(path: str | Path, quantity: MatrixQuantity | None, name: str | None)
         require_square(path, chosen.values.shape)
     except MeasurementError as error:
         raise StructureError(str(error)) from error
-    values = _checked(chosen.values, path, _titles(chosen.freedoms))
+    values = _checked(_whole(chosen.values), path, _titles(chosen.freedoms))
     return dataclasses.replace(chosen, values=values)
 
 
@@ -259,7 +259,33 @@ def _refuse_rows_beyond(path: Path, stored: StoredNodes, size: int) -> None:
         )
 
 
+def _real(matrix: Matrix, path: Path) -> Matrix:
+    """Real part of a complex matrix without an imaginary one."""
+    if abs(matrix.imag).max() > 0.0:
+        raise StructureError(
+            f"{path}: is complex; give its real part, and damping as a matrix of its own or in the "
+            "machine file (damping_ratio)"
+        )
+    return matrix.real
+
+
+def _whole(matrix: Matrix) -> Matrix:
+    """Both triangles of a matrix of which a program wrote one.
+
+    No structure has a matrix of one triangle: it would not be symmetric.
+    """
+    if scipy.sparse.issparse(matrix):
+        lower, upper = scipy.sparse.tril(matrix, -1), scipy.sparse.triu(matrix, 1)
+        one_sided = (lower.count_nonzero() == 0) != (upper.count_nonzero() == 0)
+        return scipy.sparse.csr_array(matrix + (lower + upper).T) if one_sided else matrix
+    whole = np.asarray(matrix)
+    lower, upper = np.tril(whole, -1), np.triu(whole, 1)
+    return whole + (lower + upper).T if np.any(lower) != np.any(upper) else whole
+
+
 def _checked(matrix: Matrix, path: Path, title: Callable[[int], str]) -> Matrix:
+    if np.issubdtype(matrix.dtype, np.complexfloating):
+        matrix = _real(matrix, path)
     if not np.issubdtype(matrix.dtype, np.integer) and not np.issubdtype(matrix.dtype, np.floating):
         raise StructureError(f"{path}: has entries of type {matrix.dtype}; they must be real")
     sparse = scipy.sparse.csr_array(matrix, dtype=np.float64)

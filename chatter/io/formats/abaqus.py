@@ -126,7 +126,7 @@ def _numbers(path: Path) -> Array:
                 "(*MATRIX GENERATE, *MATRIX OUTPUT, FORMAT=MATRIX INPUT)"
             )
         if text and not text.startswith("*"):
-            kept.append(text.replace(",", " "))
+            kept.append(text.replace(",", " ").replace("D", "E").replace("d", "e"))
     try:
         numbers = np.loadtxt(io.StringIO("\n".join(kept)), ndmin=2) if kept else np.empty((0, 0))
     except ValueError as error:

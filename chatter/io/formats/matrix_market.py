@@ -19,14 +19,14 @@ def require_square(path: Path, shape: tuple[int, ...]) -> None:
 
 
 def read_matrices(path: Path) -> list[StoredMatrix]:
-    """Real or integer matrix, general or symmetric.
+    """Real, integer or complex matrix, general or symmetric.
 
-    MeasurementError if it is complex or a pattern, or larger than its file.
+    MeasurementError if it is a pattern, or larger than its file.
     """
     rows, columns, _, layout, kind, symmetry = scipy.io.mminfo(path)
-    if kind not in ("real", "integer") or symmetry not in ("general", "symmetric"):
+    if kind not in ("real", "integer", "complex") or symmetry not in ("general", "symmetric"):
         raise MeasurementError(
-            f"{path}: {kind} {symmetry}; a matrix must be real, and general or symmetric"
+            f"{path}: {kind} {symmetry}; a matrix must have numbers, and be general or symmetric"
         )
     require_square(path, (rows, columns))
     if layout == "array" and rows * columns > path.stat().st_size:

@@ -27,6 +27,8 @@ from dynamics.frf.container import MeasurementError
 _SHORT_EXPONENT = re.compile(r"(?<=[\d.])([+-]\d+)$")
 #: first letters of the names that Nastran gives its matrices
 _QUANTITIES: dict[str, MatrixQuantity] = {"K": "stiffness", "M": "mass", "B": "damping"}
+#: beginning of an entry that is read, in a file of any extension
+_ENTRY = re.compile(rb"(?im)^(?:GRID\*?[ ,]\s*\d|DMIG\*?[ ,]\s*[A-Z])")
 _SYMMETRIC, _SQUARE = 6, 1
 _REAL = (1, 2)
 
@@ -164,7 +166,8 @@ NASTRAN_BULK = Format(
     name="nastran",
     label="Nastran bulk data",
     help="matrices in DMIG entries, as in punch files; nodes in GRID entries, basic coordinates",
-    extensions=(".pch", ".bdf", ".nas", ".dmig"),
+    extensions=(".pch", ".bdf", ".nas", ".dmig", ".dat", ".blk"),
     read_matrices=read_matrices,
     read_nodes=read_nodes,
+    recognises=lambda head: _ENTRY.search(head) is not None,
 )

@@ -275,10 +275,10 @@ def spoilt(matrix, row, column, value):
         (spoilt(np.eye(4), 1, 2, np.nan), "row 2, column 3 is nan"),
         (spoilt(np.eye(4), 3, 3, np.inf), "row 4, column 4 is inf"),
         (
-            spoilt(np.eye(4), 0, 3, 0.5),
+            spoilt(spoilt(np.eye(4), 0, 3, 0.5), 2, 0, 0.1),
             "not symmetric: row 1, column 4 is 0.5, row 4, column 1 is 0",
         ),
-        (np.eye(3, dtype=complex), "type complex128"),
+        ((1.0 + 0.02j) * np.eye(3), "is complex; give its real part"),
         (np.array([[None]]), "cannot be read"),
     ],
 )
@@ -357,7 +357,7 @@ def test_broken_and_foreign_files_are_refused(tmp_path):
         "short.mtx": b"%%MatrixMarket matrix coordinate real general\n2 2 3\n1 1 1.0\n",
         "huge.mtx": b"%%MatrixMarket matrix array real general\n900000 900000\n1.0\n",
         "more.mtx": b"%%MatrixMarket matrix coordinate real general\n9000000 9000000 0\n",
-        "complex.mtx": b"%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 0\n",
+        "complex.mtx": b"%%MatrixMarket matrix coordinate complex general\n1 1 1\n1 1 1 1\n",
         "pattern.mtx": b"%%MatrixMarket matrix coordinate pattern general\n1 1 1\n1 1\n",
         "matrix.txt": b"1.0",
     }

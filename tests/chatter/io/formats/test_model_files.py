@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.io
 import scipy.linalg
 import scipy.sparse
 
@@ -273,6 +274,77 @@ def test_freedoms_and_nodes_must_fit(tmp_path):
     mass = written(tmp_path, "job_MASS1.mtx", BY_NODE)
     with pytest.raises(StructureError, match=r"job_MASS1.mtx: holds mass; stiffness is to be"):
         imported_model(mass, mass, nodes=written(tmp_path, "n.csv", TABLE))
+
+
+@pytest.mark.parametrize("one", [np.tril, np.triu, np.asarray])
+@pytest.mark.parametrize("kind", ["market", "array", "sparse"])
+def test_one_triangle_is_enough(tmp_path, one, kind):
+    path = tmp_path / ("k.mtx" if kind == "market" else "k.npz")
+    if kind == "market":
+        scipy.io.mmwrite(path, scipy.sparse.coo_array(one(STIFFNESS)), symmetry="general")
+    elif kind == "array":
+        np.savez(path, one(STIFFNESS))
+    else:
+        scipy.sparse.save_npz(path, scipy.sparse.csc_matrix(one(STIFFNESS)))
+    matrix = read_matrix(path)
+    np.testing.assert_array_equal(scipy.sparse.csr_array(matrix).toarray(), STIFFNESS)
+
+
+def test_complex_entries_without_imaginary_parts(tmp_path):
+    path = tmp_path / "k.mtx"
+    scipy.io.mmwrite(path, scipy.sparse.coo_array(STIFFNESS + 0j), symmetry="general")
+    np.testing.assert_array_equal(read_matrix(path).toarray(), STIFFNESS)
+    scipy.io.mmwrite(path, scipy.sparse.coo_array(STIFFNESS * (1 + 0.02j)), symmetry="general")
+    with pytest.raises(StructureError, match=r"k.mtx: is complex; give its real part"):
+        read_matrix(path)
+
+
+@pytest.mark.parametrize("names", [("M", "K", "C"), ("mass", "stiffness", "damping")])
+def test_several_arrays_of_one_archive(tmp_path, names):
+    path = tmp_path / "part.npz"
+    held = dict(zip(names, (MASS, STIFFNESS, 0.5 * MASS), strict=True))
+    np.savez(path, labels=np.arange(4), **held)
+    structure, _ = imported_model(path, path, path)
+    np.testing.assert_array_equal(structure.mass, MASS)
+    np.testing.assert_array_equal(structure.stiffness, STIFFNESS)
+    np.testing.assert_array_equal(structure.damping, 0.5 * MASS)
+    np.savez(path, m_red=MASS, k_red=STIFFNESS)
+    with pytest.raises(StructureError, match='holds "m_red", "k_red"; say by its name'):
+        imported_model(path, path)
+    own = imported_model(path, path, names={"mass": "m_red", "stiffness": "k_red"})
+    np.testing.assert_array_equal(own.structure.stiffness, STIFFNESS)
+    np.savez(path, a=np.arange(3), b=np.ones((2, 3)))
+    with pytest.raises(StructureError, match=r"part.npz: has no square array; there is a, b"):
+        read_matrix(path)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Node ID;X;Y;Z\n3;10,0;0,5;-2,0\n8;1,0;0,0;2,5\n",
+        "NID\tX_coord\tY_coord\tZ_coord\n3\t10\t0.5\t-2\n8\t1\t0\t2.5\n",
+        "  Label   x      y     z\n  3      10   0.5    -2\n   8   1.0     0   2.5\n",
+        '"node","x","y","z"\n3.0,10,0.5,-2\n8.0,1,0,2.5\n',
+    ],
+)
+def test_tables_of_nodes_of_other_programs(tmp_path, text):
+    nodes = read_nodes(written(tmp_path, "nodes.txt", text), 6)
+    np.testing.assert_array_equal(nodes.names, [3, 8])
+    np.testing.assert_array_equal(nodes.coordinates, [[10.0, 0.5, -2.0], [1.0, 0.0, 2.5]])
+
+
+def test_units_in_a_table_of_nodes_are_refused(tmp_path):
+    path = written(tmp_path, "n.csv", "node,x [mm],y [mm],z [mm]\n3,0,0,0\n")
+    with pytest.raises(StructureError, match=r'n.csv: the column "x \[mm\]" has a unit; leave'):
+        read_nodes(path, 6)
+
+
+def test_bulk_data_of_another_extension(tmp_path):
+    bulk = "BEGIN BULK\n" + NODES["model.bdf"].replace("ENDDATA\n", "") + SMALL + "ENDDATA\n"
+    path = written(tmp_path, "model.dat", bulk)
+    structure, nodes = imported_model(path, path, nodes=path)
+    np.testing.assert_array_equal(structure.stiffness.toarray(), STIFFNESS)
+    np.testing.assert_array_equal(nodes.coordinates, [[10.0, 0.5, -2.0], [1.0, 0.0, 2.5]])
 
 
 def test_full_file_of_ansys_by_its_library(tmp_path, monkeypatch):
