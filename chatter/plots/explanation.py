@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -66,7 +67,7 @@ def plot_comparison(comparison: Comparison) -> Figure:
     if not residual.kind.is_sampled:
         return plot_findings(comparison.signature.findings[:1])
     measurement = comparison.measurement
-    title = f"{measurement.title}: residual of {measurement.case.name}"
+    title = f"{measurement.title}: residual of {Path(measurement.case.name).name}"
     return plot_residuals({"residual": residual}, title)
 
 

@@ -50,7 +50,10 @@ def _floor(drawn: Any, panel: dict[str, Any]) -> None:
 
 
 def _bars(panel: dict[str, Any]) -> Any:
-    categories = list(map(str, panel["categories"]))
+    names = list(map(str, panel["categories"]))
+    # of two alike, the second has its number
+    categories = [name if names.index(name) == k else f"{name} ({k + 1})"
+                  for k, name in enumerate(names)]  # fmt: skip
     labelled = {"x_label": "", "y_label": panel["label"]}
     drawn = _figure(labelled, x_range=FactorRange(*categories))
     width = 0.8 / max(1, len(panel["series"]))

@@ -65,25 +65,29 @@ class MeasurementView:
         )  # fmt: skip
         self.write_button = pn.widgets.Button(label="Write measurement.toml")
         self.assignment = ChannelAssignment(self._assigned)
+        self._channels = pn.Card(
+            pn.Row(self.assignment, pn.Column(self.text, self.write_button)),
+            title="Runs and channels", collapsed=True, min_width=1000,
+        )  # fmt: skip
+        #: folders whose measurement.toml is a draft of the page: further records go into it
+        self._drafts: set[str] = set()
         self.work = LongWork(session.root, show)
         self.call, self._result, self.residuals = pn.Column(), pn.Column(), ResidualView()
         self.compare_button.on_click(lambda _: self.start("compare"))
         self.explain_button.on_click(lambda _: self.start("explain"))
         self.accept_button.on_click(lambda _: self.accept())
         self.write_button.on_click(lambda _: self.write())
+        # files dropped so far are of the folder before
+        self.name.param.watch(lambda _: self.upload.forget(), "value")
         self.folder.param.watch(lambda _: self._show(), "value")
         self.case.param.watch(lambda _: self._show_calls(), "value")
         self.refresh()
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
-        channels = pn.Card(
-            pn.Row(self.assignment, pn.Column(self.text, self.write_button)),
-            title="Runs and channels", collapsed=True, min_width=1000,
-        )  # fmt: skip
         return pn.Column(
             pn.Row(self.folder, self.case, pn.Column(self.name, self.upload)),
-            channels,
+            self._channels,
             pn.Row(self.compare_button, self.explain_button, self.work.cancel_button,
                    self.work.progress),
             self.work.message,
@@ -108,31 +112,45 @@ class MeasurementView:
             folder = f"{_FOLDER}/{name}"
             session.store(folder, files, (*readable_extensions(), ".toml"))
             path = session.path(folder)
-            if not (path / _FILE).exists():
-                records = [path / one for one in sorted(files) if not one.endswith(".toml")]
-                self.assignment.offer(records)
-                self._assigned()
-                self.write(folder)
+            if _FILE in files:
+                self._drafts.discard(folder)
+            elif folder in self._drafts or not (path / _FILE).exists():
+                self._draft(folder, [path / one for one in sorted(files)])
         except InputError as error:
             self.work.show_message(str(error))
             return
         self.refresh()
         self.folder.value = folder
         self._show()
+        self._say_what_is_wrong(folder, f"{len(files)} files are in {folder}")
 
-    def write(self, folder: str = "") -> None:
+    def _draft(self, folder: str, files: list[Path]) -> None:
+        """Write a first measurement.toml: files come one by one, and each is a run."""
+        self._drafts.add(folder)
+        records = [path for path in files if path.suffix != ".toml"]
+        self.assignment.offer(records)
+        self._assigned()
+        path = self._session.path(f"{folder}/{_FILE}")
+        path.write_text(self.text.value, encoding="utf-8")
+        self._channels.collapsed = False
+
+    def write(self) -> None:
         """Write measurement.toml as it stands in the text, and say what is wrong with it."""
-        name = folder or self.folder.value
+        name = self.folder.value
         if name is None:
             return
-        path = self._session.path(f"{name}/{_FILE}")
-        path.write_text(self.text.value, encoding="utf-8")
+        self._drafts.discard(name)
+        self._session.path(f"{name}/{_FILE}").write_text(self.text.value, encoding="utf-8")
+        self._say_what_is_wrong(name, f"{name}/{_FILE} is written")
+
+    def _say_what_is_wrong(self, folder: str, else_say: str) -> None:
+        """Say what is wrong with the description of a measurement."""
         try:
-            read_measurement(path.parent)
+            read_measurement(self._session.path(folder))
         except InputError as error:
             self.work.show_message(str(error))
         else:
-            self.work.show_message(f"{name}/{_FILE} is written")
+            self.work.show_message(else_say)
 
     def start(self, name: str) -> None:
         """Compare or explain the measurement that is chosen."""
@@ -147,11 +165,21 @@ class MeasurementView:
         except InputError as error:
             self.work.show_message(str(error))
             return
+        self._name_the_next()
         call = self._call(name, own)
         self.call.objects = [same_call(call)]
         path = self._session.path(self.folder.value)
         arguments = (name, path, case, call, self._results(name))
         self.work.start(run_measurement, arguments, self._show)
+
+    def _name_the_next(self) -> None:
+        """Propose a new folder for what is dropped once work on this one has begun."""
+        if self.folder.value == f"{_FOLDER}/{self.name.value.strip()}":
+            taken = set(self._session.measurement_names())
+            self.name.value = next(
+                name for name in (f"set-{k}" for k in range(1, len(taken) + 2))
+                if f"{_FOLDER}/{name}" not in taken
+            )  # fmt: skip
 
     def accept(self) -> None:
         """Take the repaired case into the folder as a case of its own, and open it."""
@@ -222,7 +250,7 @@ class ChannelAssignment:
         self.kind = pn.widgets.Select(label="Kind", options=list(KINDS), width=130)
         self.begins = pn.widgets.Select(label="Record begins", options=list(_BEGINS), width=130)
         self.angle = pn.widgets.Checkbox(label="spindle angle unknown", value=True)
-        self.channels: dict[str, tuple[Any, Any, Any]] = {}
+        self.channels: dict[str, tuple[Any, ...]] = {}
         self.runs: dict[str, Any] = {}
         self._rows = pn.Column(pn.pane.Str("Drop records without a measurement.toml to assign "
                                            "their channels here."))  # fmt: skip
@@ -238,18 +266,28 @@ class ChannelAssignment:
         names: dict[str, None] = {}
         for path in records:
             names |= dict.fromkeys(read_signals(path))
-        self.channels = {name: _assignment() for name in names if not _is_time(name)}
-        self.runs = {path.name: pn.widgets.TextInput(
-            label=path.name, placeholder="spindle_speed=8000 rpm; axial_depth=1 mm", width=480)
-            for path in records}  # fmt: skip
-        for widget in (*(one for row in self.channels.values() for one in row),
-                       *self.runs.values()):  # fmt: skip
-            widget.param.watch(lambda _: self._changed(), "value")
+        # what was assigned stays: records come one by one
+        self.channels = {name: self.channels.get(name) or self._watched(_assignment())
+                         for name in names if not _is_time(name)}  # fmt: skip
+        self.runs = {path.name: self.runs.get(path.name) or self._run_of(path)
+                     for path in records}  # fmt: skip
         rows = [
             pn.Row(pn.pane.Str(name, width=110), *widgets)
             for name, widgets in self.channels.items()
         ]
         self._rows.objects = [*rows, *self.runs.values()]
+
+    def _watched(self, widgets: tuple[Any, ...]) -> tuple[Any, ...]:
+        for widget in widgets:
+            widget.param.watch(lambda _: self._changed(), "value")
+        return widgets
+
+    def _run_of(self, path: Path) -> Any:
+        """Field for what a run differs in from the case."""
+        field = pn.widgets.TextInput(
+            label=path.name, placeholder="spindle_speed=8000 rpm; axial_depth=1 mm", width=480
+        )
+        return self._watched((field,))[0]
 
     def toml(self, case: str) -> str:
         """Text of measurement.toml; InputError if a run is no list of assignments."""

@@ -11,14 +11,26 @@ import panel as pn
 from chatter.plots.page_picture import drawn_again
 from chatter.plots.style import write_png
 
+#: pixels of a letter of a legend and of a sign with its distances, and of what is beside the axes
+_LETTER, _SIGN, _BESIDE = 6, 40, 90
+
 
 def legend_above(figure: Any) -> None:
     """Put the legend of a figure above it, where it covers no curve; a click hides a curve."""
     for legend in list(figure.legend):
-        legend.update(orientation="horizontal", label_text_font_size="8pt", click_policy="hide",
-                      border_line_alpha=0.0)  # fmt: skip
+        legend.update(
+            orientation="horizontal", label_text_font_size="8pt", click_policy="hide",
+            border_line_alpha=0.0, ncols=_columns_of_legend(legend, figure.width),
+        )  # fmt: skip
         figure.center.remove(legend)
         figure.add_layout(legend, "above")
+
+
+def _columns_of_legend(legend: Any, width: int) -> int:
+    """Entries side by side, as many as the figure is wide for."""
+    texts = [str(getattr(item.label, "value", item.label) or "") for item in legend.items]
+    widest = max((len(text) for text in texts), default=0) * _LETTER + _SIGN
+    return max(1, min(len(texts), int((width - _BESIDE) // widest)))
 
 
 def picture_file(figure: Any, form: str) -> io.BytesIO:

@@ -14,6 +14,7 @@ from chatter.app.workbench.diagnostic_figure import diagnostic_figure
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.residual_file import read_residuals
 from chatter.app.workbench.wrapped_text import wrapped_text
+from chatter.explain.residuals.by_channel import short_name
 from chatter.plots import style
 
 #: colours of a model's residual
@@ -83,7 +84,7 @@ class ResidualView:
         models = list(chosen[0]["over_noise"])
         panel = {
             "kind": "Bars",
-            "categories": [one["run"] for one in chosen],
+            "categories": [short_name(one["run"]) for one in chosen],
             "series": {name: [one["over_noise"].get(name) for one in chosen] for name in models},
             "label": "residual over noise",
             "floor": 1.0,

@@ -13,6 +13,8 @@ from chatter.app.workbench.separate_process import Report
 from chatter.app.workbench.session import CaseText, read_call, write_call
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
+from chatter.explain.next_measurement.proposal import in_words as next_in_words
+from chatter.report.parameters import parameter_row
 
 #: files of a picture that a result draws beside the PNG that it saves
 PICTURE = "picture.svg"
@@ -178,26 +180,50 @@ def run_measurement(
         sentences = result.sentences()
     else:
         result = chatter.explain(measurement, given, report)
-        sentences = _of_explanation(result.summary())
+        sentences = explanation_in_words(result.summary())
     save_result(result, folder, {"title": name, **call})
     write_residuals(result, folder)
     write_call(folder, {**read_call(folder), "sentences": sentences})
 
 
-def _of_explanation(summary: Mapping[str, Any]) -> list[str]:
+#: errors of an explanation, in the words of the page
+_ERRORS = {
+    "declared": "of the declared case",
+    "before": "refitted",
+    "after": "with the effects",
+    "holdout_before": "of runs that were not fitted, refitted",
+    "holdout_after": "the same with the effects",
+    "noise_floor": "of noise alone",
+}
+
+
+def explanation_in_words(summary: Mapping[str, Any]) -> list[str]:
     """Verdict, effects with their values, and what became of the error."""
     found = [f"verdict: {summary['verdict']}"]
     for effect in summary.get("effects", ()):
-        values = ", ".join(
-            f"{key} {one['value']:.4g} {one['unit']} ({one['ci95'][0]:.4g} to {one['ci95'][1]:.4g})"
-            for key, one in effect["parameters"].items()
+        found.append(
+            f"{effect['name'].replace('_', ' ')} (probability {effect['probability']:.3g}): "
+            f"{effect['description']}; {_values_of(effect)}"
         )
-        found.append(f"{effect['name']} (probability {effect['probability']:.3g}): {values}")
+    partial = [f"{one['name'].replace('_', ' ')} (probability {one['probability']:.2g})"
+               for one in summary.get("partial", ())]  # fmt: skip
+    found += [f"may explain a part, not added: {', '.join(partial)}"] if partial else []
     error = summary.get("error") or {}
-    told = [f"{key.replace('_', ' ')} {value:.4g}" for key, value in error.items()
-            if isinstance(value, float)]  # fmt: skip
-    found += [f"error over the signal: {', '.join(told)}"] if told else []
+    told = [f"{words} {100.0 * error[key]:.3g} %" for key, words in _ERRORS.items()
+            if isinstance(error.get(key), float)]  # fmt: skip
+    found += [f"error of the prediction over the signal: {', '.join(told)}"] if told else []
+    if summary.get("next_measurement"):
+        found.append(next_in_words(summary["next_measurement"]))
     return found + [one["description"] for one in summary.get("checks", ())]
+
+
+def _values_of(effect: Mapping[str, Any]) -> str:
+    """Parameters of an effect in the units that people use, with their intervals."""
+    rows = (parameter_row(key, one) for key, one in effect["parameters"].items())
+    return ", ".join(
+        f"{name.replace('_', ' ')} {value}{f' {unit}' if unit else ''} ({interval})"
+        for name, value, unit, interval in rows
+    )
 
 
 def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:

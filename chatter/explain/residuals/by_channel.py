@@ -1,6 +1,7 @@
 """Residual by run and channel against the noise, and whether it changes within a run."""
 
 import math
+import re
 
 import numpy as np
 import scipy
@@ -28,7 +29,7 @@ def by_channel(residual: Residual) -> Finding:
         _sentence(residual, levels),
         bool(residual.above_noise),
         {"over_noise": levels, "by_run": runs},
-        Bars(tuple(map(_short, names)), series, "residual over noise", floor=1.0),
+        Bars(tuple(map(short_name, names)), series, "residual over noise", floor=1.0),
     )
 
 
@@ -41,16 +42,17 @@ def _sentence(residual: Residual, levels: dict[str, float]) -> str:
     for channel in sorted(above, key=lambda name: -levels[name]):
         most = max(residual.of(channel), key=lambda part: part.over_noise)
         parts.append(
-            f"{levels[channel]:.3g} times the noise in {channel} (most in {_short(most.run.name)}, "
-            f"{most.over_noise:.3g} times)"
+            f"{levels[channel]:.3g} times the noise in {channel} "
+            f"(most in {short_name(most.run.name)}, {most.over_noise:.3g} times)"
         )
     rest = [channel for channel in levels if channel not in above]
     quiet = f"; {', '.join(rest)} {'is' if len(rest) == 1 else 'are'} at the noise" if rest else ""
     return f"The residual is {'; '.join(parts)}{quiet}."
 
 
-def _short(name: str) -> str:
-    return name.rpartition(".")[0] or name
+def short_name(name: str) -> str:
+    """Name of a run without its extension, "move01, part 3" of "move01.csv, part 3 of 12"."""
+    return re.sub(r"\.\w+(?=,|$)| of \d+$", "", name)
 
 
 _SEGMENTS = 12

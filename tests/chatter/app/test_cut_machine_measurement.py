@@ -14,6 +14,7 @@ import tomlkit
 import chatter
 from chatter.app.workbench.cut_view import sound_of
 from chatter.app.workbench.page import Workbench
+from chatter.app.workbench.studies import explanation_in_words
 from chatter.description.errors import InputError
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
 from tests.places import EXAMPLES
@@ -109,6 +110,50 @@ def test_channels_are_assigned_by_hand(workbench, tmp_path):
     assert (tmp_path / "measurements/set-1" / written["case"]).resolve() == tmp_path / "case.toml"
 
 
+def record(channel):
+    time = np.arange(0.0, 0.1, 1e-4)
+    rows = [f"time [s],{channel} [N]", *(f"{t},{np.sin(t)}" for t in time)]
+    return "\n".join(rows).encode()
+
+
+def test_records_that_come_one_by_one_are_runs_all_of_them(workbench, tmp_path):
+    """The first became a run; those that the page received after it did not."""
+    view = workbench.measurement
+    files = {"run01.csv": record("F1")}
+    view.take(files)
+    assert not view._channels.collapsed
+    view.assignment.channels["F1"][0].value = "force"
+    view.take({**files, "run02.csv": record("F1")})
+    written = tomlkit.parse((tmp_path / "measurements/set-1/measurement.toml").read_text())
+    assert [run["file"] for run in written["run"]] == ["run01.csv", "run02.csv"]
+    # what was assigned meanwhile stays
+    assert written["channels"]["F1"]["quantity"] == "force"
+    # a measurement.toml that is dropped counts, whenever it comes
+    own = b'kind = "milling"\ncase = "../../case.toml"\n[[run]]\nfile = "run02.csv"\n'
+    view.take({**files, "run02.csv": record("F1"), "measurement.toml": own})
+    assert (tmp_path / "measurements/set-1/measurement.toml").read_bytes() == own
+    assert "no [[run]]" not in view.work.message.object
+
+
+def test_files_of_the_folder_before_do_not_go_into_the_next(workbench, tmp_path):
+    """The third set was the second one again, with its measurement.toml."""
+    view = workbench.measurement
+
+    def drop(name):
+        view.upload.value[name] = record("F1")
+        view.upload.param.trigger("value")
+
+    drop("run01.csv")
+    view.name.value = "other"
+    drop("run02.csv")
+    folder = tmp_path / "measurements" / "other"
+    assert {path.name for path in folder.iterdir()} == {"run02.csv", "measurement.toml"}
+    # once work on a folder has begun, what is dropped is a new one
+    view.start("compare")
+    assert view.name.value == "set-2"
+    assert view.work.computations.wait(PATIENCE)
+
+
 def test_the_repaired_case_is_accepted_under_a_new_name(workbench, tmp_path):
     view = workbench.measurement
     folder = tmp_path / "measurements" / "set-1"
@@ -141,3 +186,21 @@ def test_a_measurement_that_lacks_its_runs_says_so(workbench, tmp_path):
 def test_no_accepted_case_leaves_the_folder(workbench):
     with pytest.raises(InputError):
         workbench.session.new_path("../x.toml")
+
+
+def test_an_explanation_is_told_in_the_units_of_people():
+    """ "mode_shift: slope -5.421e-05 s/rad; error over the signal: noise floor 0.2418, ..." """
+    stiffness = {"value": 1.25e7, "unit": "N/m", "ci95": [1.2e7, 1.3e7]}
+    effect = {"name": "missing_mode", "description": "a mode that is not declared",
+              "probability": 0.99, "parameters": {"stiffness": stiffness}}  # fmt: skip
+    told = explanation_in_words({
+        "verdict": "explained", "effects": [effect],
+        "error": {"declared": 0.6446, "before": 0.453, "after": 0.0431, "noise_floor": None},
+    })  # fmt: skip
+    assert told == [
+        "verdict: explained",
+        "missing mode (probability 0.99): a mode that is not declared; "
+        "stiffness 12.5 N/um (12 to 13)",
+        "error of the prediction over the signal: of the declared case 64.5 %, refitted 45.3 %, "
+        "with the effects 4.31 %",
+    ]

@@ -13,6 +13,7 @@ from chatter.app.workbench.diagnostic_figure import diagnostic_figure
 from chatter.app.workbench.picture_files import picture_file
 from chatter.app.workbench.residual_file import RESIDUALS, read_residuals, write_residuals
 from chatter.app.workbench.residual_view import ResidualView
+from chatter.explain.residuals.by_channel import short_name
 from chatter.io.signals import read_signals
 from tests.places import EXAMPLES
 
@@ -100,3 +101,12 @@ def test_a_folder_without_residuals_shows_nothing(folder, tmp_path):
     (tmp_path / RESIDUALS).write_text("{ half of a")
     view.show(tmp_path)
     assert not view._view.visible
+
+
+def test_bars_of_parts_of_one_record_have_names_of_their_own():
+    """All were "move01", which no axis of categories takes: the picture stayed empty."""
+    names = ["move01.csv, part 1 of 12", "move01.csv, part 12 of 12", "rec.1.csv"]
+    assert list(map(short_name, names)) == ["move01, part 1", "move01, part 12", "rec.1"]
+    panel = {"kind": "Bars", "categories": ["a", "a"], "series": {"force": [1.0, 2.0]},
+             "label": "residual over noise", "floor": 1.0}  # fmt: skip
+    assert diagnostic_figure(panel, "").x_range.factors == ["a", "a (2)"]
