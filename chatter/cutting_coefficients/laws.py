@@ -101,14 +101,35 @@ LAWS = (
 )
 #: laws of which every direction has its own form: a line with its edge force, or a power
 BY_DIRECTION = (
-    TriedLaw("a line for each", "linear", _CUTTING + _EDGE),
-    TriedLaw("line, power, line", "exponential", (*_CUTTING, "Kte", "Kae"), (-1, 0, -1)),
-    TriedLaw("line, line, power", "exponential", (*_CUTTING, "Kte", "Kre"), (-1, -1, 0)),
-    TriedLaw("line, power, power", "exponential", (*_CUTTING, "Kte"), (-1, 0, 1)),
-    TriedLaw("power, line, line", "exponential", (*_CUTTING, "Kre", "Kae"), (0, -1, -1)),
-    TriedLaw("power, power, line", "exponential", (*_CUTTING, "Kae"), (0, 1, -1)),
-    TriedLaw("power, line, power", "exponential", (*_CUTTING, "Kre"), (0, -1, 1)),
-    TriedLaw("a power for each", "exponential", _CUTTING, (0, 1, 2)),
+    TriedLaw("linear in each direction", "linear", _CUTTING + _EDGE),
+    TriedLaw(
+        "linear (tangential, axial), power (radial)",
+        "exponential",
+        (*_CUTTING, "Kte", "Kae"),
+        (-1, 0, -1),
+    ),
+    TriedLaw(
+        "linear (tangential, radial), power (axial)",
+        "exponential",
+        (*_CUTTING, "Kte", "Kre"),
+        (-1, -1, 0),
+    ),
+    TriedLaw(
+        "linear (tangential), power (radial, axial)", "exponential", (*_CUTTING, "Kte"), (-1, 0, 1)
+    ),
+    TriedLaw(
+        "power (tangential), linear (radial, axial)",
+        "exponential",
+        (*_CUTTING, "Kre", "Kae"),
+        (0, -1, -1),
+    ),
+    TriedLaw(
+        "power (tangential, radial), linear (axial)", "exponential", (*_CUTTING, "Kae"), (0, 1, -1)
+    ),
+    TriedLaw(
+        "power (tangential, axial), linear (radial)", "exponential", (*_CUTTING, "Kre"), (0, -1, 1)
+    ),
+    TriedLaw("power in each direction", "exponential", _CUTTING, (0, 1, 2)),
 )
 
 

@@ -23,7 +23,9 @@ lobes_before_after  stability lobes before and after
 stability_margin    how far cutting tests are from the limit
 tests_side_by_side  dominant multipliers of tests that share a tool, solved together
 cutting_tests       search, verdict and limits of cutting tests
-explanation         `explain`: verdict, effects, errors; files
+verdict             explained, in part, nothing missing or unexplained
+contradiction       what is said of data that contradict themselves or their case
+explanation         `explain`: effects and errors; files
 comparison          `compare`: errors of the declared case
 =================== ================================================================
 """

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.case import Case
-from chatter.description.errors import InputError, RunError
 from chatter.description.given_path import path_given
 from chatter.description.whole_files import write_whole
-from chatter.explain.checking import Checked, checked
+from chatter.explain.checking import checked
+from chatter.explain.contradiction import Contradiction
 from chatter.explain.criteria import MOST_PROBABLE, MOST_PROBABLE_BESIDE_UNKNOWN, OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
 from chatter.explain.cutting_tests.search_of_tests import search_of_tests
@@ -42,14 +42,12 @@ from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.explain.selection.candidates import Candidate, Progress, Stage
 from chatter.explain.selection.discriminating_test import discriminating_test
 from chatter.explain.selection.search import Search, search
+from chatter.explain.verdict import COMPLETE, EXPLAINED, EXPLAINED_IN_PART, UNEXPLAINED, verdict_of
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-EXPLAINED, NOTHING_MISSING, UNEXPLAINED = "explained", "nothing-missing", "unexplained"
-EXPLAINED_IN_PART = "explained-in-part"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -170,7 +168,7 @@ class Explanation(NotebookResult):
     @cached_property
     def residual_dependence(self) -> ResidualDependence | None:
         """On what a residual that no effect explains depends; None where there is none."""
-        if self.verdict in (EXPLAINED, NOTHING_MISSING):
+        if self.verdict in COMPLETE:
             return None
         repaired = self.repaired_signature
         if repaired is not None and repaired.dependence.finding.significant:
@@ -344,88 +342,6 @@ class Explanation(NotebookResult):
         return [*written, residuals, case]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Contradiction(NotebookResult):
-    """Verdict on data that would mislead any search for effects.
-
-    Parameters
-    ----------
-    checked : Checked
-        With a finding that is fatal.
-    """
-
-    checked: Checked
-    verdict: str = field(default=UNEXPLAINED, init=False)
-
-    def __repr__(self) -> str:
-        """Short: what it holds would fill the screen."""
-        return f"<Contradiction {self.measurement.title!r}, {self.verdict}>"
-
-    @property
-    def measurement(self) -> Measurement:
-        """What was measured."""
-        return self.checked.measurement
-
-    @property
-    def checks(self) -> tuple[SignalFinding, ...]:
-        """What was found."""
-        return self.checked.findings
-
-    @property
-    def case(self) -> Case:
-        """The declared case, as it is."""
-        return self.measurement.case
-
-    def summary(self) -> dict[str, Any]:
-        """Content of explanation.json."""
-        declared = self._error()
-        return {
-            "verdict": self.verdict,
-            "checks": self.checked.as_list(),
-            "effects": [],
-            "partial": [],
-            "out_of_tolerance": [],
-            "error": {
-                "metric": "nrmse",
-                "noise_floor": None,
-                "declared": declared,
-                "before": declared,
-                "after": declared,
-                "holdout_before": None,
-                "holdout_after": None,
-            },
-            "candidates": [],
-            "signature": {"refitted": None, "repaired_model": None, "residual_dependence": None},
-            "normalised_residual": {},
-            "next_measurement": None,
-        }
-
-    def _error(self) -> float | None:
-        """Error of the declared case, where it can be predicted."""
-        if self.checked.forbids_prediction:
-            return None
-        try:
-            kind = KINDS[self.measurement.kind]
-            runs = kind.prepared(self.measurement).runs
-            return finite_or_none(overall(errors_of(self.case, Predictions(kind), runs)))
-        except (InputError, RunError):
-            return None
-
-    def plot(self) -> Figure:
-        """Picture of the signals as recorded."""
-        return presentation("plots.explanation").plot_signals(self.measurement)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write explanation.json, report.html and the case as declared."""
-        summary = self.summary()
-        page = presentation("report.explanation").page_of_contradiction(self, summary)
-        texts = {"explanation.json": as_json(summary), "report.html": page}
-        written = write_results(folder, texts, {})
-        path = Path(folder) / "case-updated.toml"
-        self.case.save(path)
-        return [*written, path]
-
-
 def explain(
     measurement: str | Path | Measurement,
     case: str | Path | Case | None = None,
@@ -468,14 +384,29 @@ def explain(
     prepared = kind.prepared(usable.measurement)
     predictions = Predictions(kind, kept_predictions(folder, "explain", prepared))
     with predictions.kept.going_on():
-        searched = search_of_tests if kind.name == Stability.name else search
-        found = searched(prepared, predictions, progress)
+        prepared, found, slow = _searched(prepared, predictions, progress)
         verdict = verdict_of(found)
-        is_settled = verdict in (EXPLAINED, NOTHING_MISSING)
-        terms = None if is_settled else _learnt(found, verdict, progress)
+        terms = None if verdict in COMPLETE else _learnt(found, verdict, progress)
     # errors, as the search, behind the filter that the records have
     shown = kind.with_filter_by(prepared, found.problem.case(found.of_fitted.by_name))
-    return Explanation(shown, found, verdict, predictions, usable.findings, terms)
+    findings = (*usable.findings, *slow)
+    return Explanation(shown, found, verdict, predictions, findings, terms)
+
+
+def _searched(
+    measurement: Measurement, predictions: Predictions, progress: Progress
+) -> tuple[Measurement, Search, list[SignalFinding]]:
+    """Search; where something is left, again without runs that it tells need not have settled."""
+    kind = predictions.kind
+    searched = search_of_tests if kind.name == Stability.name else search
+    found = searched(measurement, predictions, progress)
+    if verdict_of(found) in COMPLETE:
+        return measurement, found, []
+    case = found.problem.case(found.of_fitted.by_name)
+    fewer, slow = kind.without_too_slow(measurement, case)
+    if slow:
+        found = searched(fewer, predictions, progress)
+    return fewer, found, slow
 
 
 def _learnt(found: Search, verdict: str, progress: Progress) -> Learnt | None:
@@ -485,16 +416,6 @@ def _learnt(found: Search, verdict: str, progress: Progress) -> Learnt | None:
         problem = replace(problem, effects=())
         now = problem.fit(found.split.fitted, found.first.before.by_name)
     return learnt(problem, now, found.split, progress)
-
-
-def verdict_of(found: Search) -> str:
-    """Verdict on what was found.
-
-    A residual at the noise explains nothing where declared values left their tolerances for it.
-    """
-    if not found.is_at_noise or found.out_of_tolerance:
-        return EXPLAINED_IN_PART if found.accepted and found.is_certain else UNEXPLAINED
-    return EXPLAINED if found.accepted else NOTHING_MISSING
 
 
 def as_measurement(

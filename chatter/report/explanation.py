@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from chatter.explain.contradiction import Contradiction
 from chatter.explain.data_checks.finding import FOLLOWS
-from chatter.explain.explanation import Contradiction, Explanation
+from chatter.explain.explanation import Explanation
 from chatter.explain.next_measurement.proposal import in_words as measure_next
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words

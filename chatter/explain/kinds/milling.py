@@ -29,6 +29,7 @@ from chatter.explain.records.beginning import beginning_of
 from chatter.explain.records.description import ACCELERATION, REST
 from chatter.explain.records.from_rest import from_rest
 from chatter.explain.records.recognition import from_rest_records, settled_records
+from chatter.explain.records.settling import without_too_slow
 from chatter.explain.records.steady_record import SteadyRecord
 from chatter.explain.residuals.by_channel import by_channel, over_time
 from chatter.explain.residuals.over_runs import over_runs
@@ -143,6 +144,12 @@ class Milling(Kind):
     def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with the order of its anti-alias filter by a case."""
         return with_filter_by(measurement, case)
+
+    def without_too_slow(
+        self, measurement: Measurement, case: Case
+    ) -> tuple[Measurement, list[SignalFinding]]:
+        """Leave out records that need not have settled, by a case found."""
+        return without_too_slow(measurement, case, "refitted")
 
     def revolution(self, run: Run) -> float | None:
         """Time of a revolution where a record is settled, s."""

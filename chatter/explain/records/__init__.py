@@ -13,6 +13,7 @@ anti_alias_filter   order of the filter, by all the records together
 orientation         directions and signs that are not told
 slow_channels       spindle power and torques of drives
 steady_record       what a run needs to be predicted in its settled part
+settling            runs so near to their limit that they need not have settled
 recognition         from runs as read to runs that can be judged
 =================== ================================================================
 """

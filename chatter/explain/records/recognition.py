@@ -22,15 +22,11 @@ from chatter.explain.records.description import (
     RecordDescription,
 )
 from chatter.explain.records.orientation import oriented
+from chatter.explain.records.settling import Settling, too_slow
 from chatter.explain.records.slow_channels import POWER, power_channel, with_power, with_torques
 from chatter.explain.records.spindle import TachoReading, speed_by_repetition, tacho_reading
 from chatter.explain.records.stages import Stages, stages_of
-from chatter.explain.records.steady_cut import (
-    REVOLUTIONS,
-    change_left,
-    revolutions_to_settle,
-    steady_cut,
-)
+from chatter.explain.records.steady_cut import revolutions_to_settle, steady_cut
 from chatter.explain.records.steady_record import SteadyRecord, smallest_symmetry
 
 Array = NDArray[np.float64]
@@ -39,8 +35,6 @@ Array = NDArray[np.float64]
 _LEAST_NOISE = 5e-3
 #: unsteadiness and drift of a run that is no settled cut, and times those of the others
 _UNSTEADY, _DRIFTING, _MORE_UNSTEADY = 0.06, 0.04, 4.0
-#: change, over the signal, that is left when a record ends, from which it need not have settled
-_LEFT = 0.03
 #: share of the records that must be predicted for an orientation, and by which it beats others
 _LEAST_SHARE, _CLEARER = 0.3, 0.05
 #: length of the mean of what a tacho tells against what the cut tells, from which they agree
@@ -82,7 +76,7 @@ def settled_records(
     settled = [_settled(measurement, run, record, channels) for run in measurement.runs]
     settled, new = _without_unsteady(settled)
     findings += new
-    settled, new = _without_slow(settled)
+    settled, new = _without_too_slow(settled)
     findings += new
     unknown = {k: v for k, v in vectors.items() if v.direction is None or not v.has_sign}
     if unknown and settled:
@@ -241,30 +235,13 @@ def _without_unsteady(settled: Sequence[_Settled]) -> tuple[list[_Settled], list
     return kept, found
 
 
-def _without_slow(settled: Sequence[_Settled]) -> tuple[list[_Settled], list[SignalFinding]]:
-    """Runs that settle within their records by the case as declared, where these are the most.
-
-    At the limit of stability transients last longer than a record and hardly change within it, and
-    small differences of the case are large ones of the settled cut.
-    """
-    slow = [one for one in settled if _settles_too_slowly(one)]
-    if 2 * len(slow) >= len(settled):
-        return list(settled), []
-    found = [
-        SignalFinding(
-            RUN, one.run.name, "",
-            f"{one.run.name}: by the case as declared the cut is so near to its stability limit "
-            f"that it does not settle within the {one.revolutions} revolutions of the record: "
-            "whether it had settled cannot be told",
-        )
-        for one in slow
-    ]  # fmt: skip
-    return [one for one in settled if one not in slow], found
-
-
-def _settles_too_slowly(one: _Settled) -> bool:
-    longest = REVOLUTIONS[-1]
-    return one.revolutions < longest and change_left(one.case, one.revolutions) > _LEFT
+def _without_too_slow(settled: Sequence[_Settled]) -> tuple[list[_Settled], list[SignalFinding]]:
+    """Runs that settle within their records, by the case as declared."""
+    found = too_slow(
+        [Settling(one.run.name, one.case, one.revolutions) for one in settled], "declared"
+    )
+    slow = {one.run for one in found}
+    return [one for one in settled if one.run.name not in slow], found
 
 
 def _with_orientation(
@@ -301,7 +278,9 @@ def _steady(one: _Settled, channels: Mapping[str, Channel], record: RecordDescri
     rows = replace(one, run=turned).recorded(list(components))
     angle = _known_angle(turned, record)
     rows = replace(rows, angle=angle)
-    steady = SteadyRecord(components, rows, revolutions_to_settle(one.case), one.description)
+    steady = SteadyRecord(
+        components, rows, revolutions_to_settle(one.case), one.revolutions, one.description
+    )
     signals = dict(turned.signals)
     signals["spindle_angle"] = steady.aligned(one.case).angle
     turned = replace(turned, signals=signals, components=components)

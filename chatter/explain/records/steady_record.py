@@ -23,6 +23,7 @@ class SteadyRecord:
     components: Mapping[str, Component]  # channel -> what it holds, in the order of `recorded`
     recorded: Recorded
     revolutions: int  # simulated from rest until the cut is settled
+    revolutions_recorded: int  # of the cut, settled or not
     entered_by: str = ""  # stages of the record in words
     has_power: bool = False  # whether the power of the spindle is predicted
     filter_order: int = USUAL_ORDER  # of the anti-alias filter

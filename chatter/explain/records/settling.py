@@ -1,0 +1,60 @@
+"""Runs so near to their stability limit that their records need not show the settled cut.
+
+At the limit transients last longer than a record and hardly change within it, and small differences
+of the case are large ones of the settled cut.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from chatter.description.case import Case
+from chatter.explain.data_checks.finding import RUN, SignalFinding
+from chatter.explain.measurement import Measurement
+from chatter.explain.records.steady_cut import REVOLUTIONS, change_left
+from chatter.explain.records.steady_record import SteadyRecord
+
+#: change, over the signal, that is left when a record ends, from which it need not have settled
+_LEFT = 0.03
+
+
+class Settling(NamedTuple):
+    """A run and the cut in its record."""
+
+    name: str
+    case: Case  # with the overrides of the run
+    revolutions: int  # of the cut in the record
+
+    @property
+    def is_too_slow(self) -> bool:
+        """Whether a transient from rest would outlast the record."""
+        longest = REVOLUTIONS[-1]
+        return self.revolutions < longest and change_left(self.case, self.revolutions) > _LEFT
+
+
+def too_slow(runs: Sequence[Settling], model: str) -> list[SignalFinding]:
+    """Runs that do not settle within their records by a model, unless these are half of all."""
+    slow = [one for one in runs if one.is_too_slow]
+    if 2 * len(slow) >= len(runs):
+        return []
+    return [
+        SignalFinding(
+            RUN, one.name, "",
+            f"{one.name}: by the {model} case the cut is so near to its stability limit that it "
+            f"does not settle within the {one.revolutions} revolutions of the record: whether it "
+            "had settled cannot be told",
+        )
+        for one in slow
+    ]  # fmt: skip
+
+
+def without_too_slow(
+    measurement: Measurement, case: Case, model: str
+) -> tuple[Measurement, list[SignalFinding]]:
+    """Leave out the runs that do not settle within their records by a case that was found."""
+    records = [run for run in measurement.runs if isinstance(run.record, SteadyRecord)]
+    found = too_slow(
+        [Settling(run.name, run.of(case), run.record.revolutions_recorded) for run in records],
+        model,
+    )
+    slow = {one.run for one in found}
+    return measurement.with_runs([one for one in measurement.runs if one.name not in slow]), found
