@@ -67,7 +67,7 @@ class MeasurementView:
         self.assignment = ChannelAssignment(self._assigned)
         self._channels = pn.Card(
             pn.Row(self.assignment, pn.Column(self.text, self.write_button)),
-            title="Runs and channels", collapsed=True, min_width=1000,
+            title="Runs and channels", collapsed=True, min_width=1200,
         )  # fmt: skip
         #: folders whose measurement.toml is a draft of the page: further records go into it
         self._drafts: set[str] = set()
@@ -114,6 +114,7 @@ class MeasurementView:
             path = session.path(folder)
             if _FILE in files:
                 self._drafts.discard(folder)
+                self._channels.collapsed = True
             elif folder in self._drafts or not (path / _FILE).exists():
                 self._draft(folder, [path / one for one in sorted(files)])
         except InputError as error:
@@ -259,7 +260,7 @@ class ChannelAssignment:
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the form for the page."""
-        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=520)
+        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=600)
 
     def offer(self, records: list[Path]) -> None:
         """Make a row for every channel of the records and for every run."""
@@ -275,7 +276,12 @@ class ChannelAssignment:
             pn.Row(pn.pane.Str(name, width=110), *widgets)
             for name, widgets in self.channels.items()
         ]
-        self._rows.objects = [*rows, *self.runs.values()]
+        self._rows.objects = [
+            pn.pane.Markdown("What each channel measures, on which side, along which direction:"),
+            *rows,
+            pn.pane.Markdown("What each run differs in from the case:"),
+            *self.runs.values(),
+        ]
 
     def _watched(self, widgets: tuple[Any, ...]) -> tuple[Any, ...]:
         for widget in widgets:
