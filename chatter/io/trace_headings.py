@@ -24,6 +24,12 @@ _WRITTEN = {
 }  # fmt: skip
 #: what a revolution is called in a unit, besides those that the units library knows
 _COUNTS = ("1", "r", "u", "rev")
+#: a unit behind an underscore; one letter might be an axis, but for the time
+_BEHIND_A_STROKE = re.compile(
+    r"(?P<name>.+?)_(?P<unit>mm_min|m_min|mm_s|m_s|mm|um|ms|us|rpm|Nm)|(?P<time>t|time|zeit)_s",
+    re.IGNORECASE,
+)
+_OF_STROKES = {"mm_min": "mm/min", "m_min": "m/min", "mm_s": "mm/s", "m_s": "m/s"}
 #: of time, position, velocity, speed, force, current and torque
 _SYMBOLS = ("t", "s", "x", "v", "n", "F", "I", "i", "M")
 
@@ -33,9 +39,13 @@ def split_trace_heading(heading: str) -> tuple[str, str]:
 
     A quotient stands for a value over its unit (ISO 80000-1): the unit is one that is known, and
     what stands before the slash is a symbol, or does not end in a unit itself, as in
-    ``"feed mm/min"``.
+    ``"feed mm/min"``. ``"X_cmd_mm"`` ends in a unit that is no axis.
     """
     name, unit = split_heading(heading)
+    if not unit and (behind := _BEHIND_A_STROKE.fullmatch(name)):
+        if behind["time"]:
+            return behind["time"], "s"
+        return behind["name"], _OF_STROKES.get(behind["unit"].lower(), behind["unit"])
     # "v/(mm/min)" is split before its bracket
     if unit:
         return name.removesuffix("/").strip(), unit

@@ -222,7 +222,8 @@ def _end(state: _State, line: Line) -> tuple[Array, bool]:
         if value is None:
             continue
         given = True
-        before = state.position[axis] if state.modal["distances"] == "incremental" else 0.0
+        incremental = line.is_incremental(letter, state.modal["distances"] == "incremental")
+        before = state.position[axis] if incremental else 0.0
         end[axis] = before + unit * value
     return end, given
 
@@ -255,7 +256,10 @@ def _arc(state: _State, line: Line, start: Array, end: Array) -> Element:
         if radius is not None:
             return arc_by_radius(ends, unit * radius)
         middle = np.array([unit * given.get(axis, 0.0) for axis in plane])
-        return arc_by_centre(ends, middle - start[list(plane)] if absolute else middle)
+        absolutely = [
+            axis in given and not line.is_incremental(_CENTRE[axis], not absolute) for axis in plane
+        ]
+        return arc_by_centre(ends, middle - np.where(absolutely, start[list(plane)], 0.0))
     except ValueError as error:
         raise line.refuse(f"arc: {error}") from None
 

@@ -9,8 +9,17 @@ from pathlib import Path
 
 from chatter.description.errors import InputError
 
-_COMMENT = re.compile(r"\([^()]*\)")
-_WORD = re.compile(r"\s*(CR|[A-Z])\s*=?\s*([+-]?(?:\d+\.?\d*|\.\d+))(?![\d.])")
+#: not the bracket of "I=AC(25)"
+_COMMENT = re.compile(r"(?<!AC)(?<!IC)\([^()]*\)")
+#: a text on the screen of the control
+_MESSAGE = re.compile(r"^((?:N\d+\s*)?)MSG\s*\(.*\)\s*$")
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+_WORD = re.compile(rf"\s*(CR|[A-Z])\s*=?\s*({_NUMBER})(?![\d.])")
+#: an end or a centre that is absolute or incremental by itself, whatever holds in the program
+_REFERRED = re.compile(rf"\s*([XYZIJK])\s*=\s*(AC|IC)\s*\(\s*({_NUMBER})\s*\)")
+_DECIMAL_COMMA = re.compile(r",\d")
+#: first words of a program in the dialogue of Heidenhain
+_DIALOGUE = re.compile(r"^(\d+\s+)?(BEGIN PGM|BLK FORM|L [XYZI]|CC |TOOL CALL)")
 _LONGEST = 40
 
 
@@ -21,6 +30,7 @@ class Word:
     letter: str
     number: float
     text: str  # as written
+    reference: str = ""  # "AC": absolute, "IC": incremental, "": as the program has it
 
 
 @dataclass(frozen=True)
@@ -43,6 +53,11 @@ class Line:
             raise self.refuse(f"{texts} are both there; one {letter} a block")
         return found[0].number if found else None
 
+    def is_incremental(self, letter: str, usually: bool) -> bool:
+        """Whether the number of a letter counts from the start of the block."""
+        references = {word.reference for word in self.words if word.letter == letter}
+        return "IC" in references or (usually and "AC" not in references)
+
 
 def lines_of(path: Path, texts: Sequence[str]) -> Iterator[Line]:
     """Lines that hold words, without comments, program number, line numbers and percent signs.
@@ -51,8 +66,9 @@ def lines_of(path: Path, texts: Sequence[str]) -> Iterator[Line]:
     """
     for number, text in enumerate(texts, start=1):
         line = Line(path, number, ())
-        body = _COMMENT.sub(" ", text.partition(";")[0]).strip().upper()
-        if "(" in body or ")" in body:
+        body = _MESSAGE.sub(r"\1", text.partition(";")[0].strip().upper())
+        body = _COMMENT.sub(" ", body).strip()
+        if body.count("(") != body.count(")"):
             raise line.refuse(f"a bracket is open: {text.strip()[:_LONGEST]!r}")
         if not body or body == "%":
             continue
@@ -70,10 +86,20 @@ def _words(line: Line, body: str) -> Iterator[Word]:
     while place < len(body):
         if body[place:].isspace():
             return
-        match = _WORD.match(body, place)
+        referred = _REFERRED.match(body, place)
+        match = referred or _WORD.match(body, place)
         if match is None:
-            raise line.refuse(
-                f"{body[place:].strip()[:_LONGEST]!r} is no word such as X-12.5 or G1"
-            )
-        yield Word(match[1], float(match[2]), match[0].strip())
+            raise line.refuse(_no_word(body, place))
+        reference = referred[2] if referred else ""
+        yield Word(match[1], float(match[match.lastindex]), match[0].strip(), reference)
         place = match.end()
+
+
+def _no_word(body: str, place: int) -> str:
+    """Why what stands at a place of a line is no word."""
+    if _DIALOGUE.match(body):
+        return "is a block of Heidenhain's dialogue; write the program as DIN/ISO (G codes)"
+    if place and _DECIMAL_COMMA.match(body, place):
+        word = body[:place].split()[-1] + body[place:].split()[0]
+        return f"{word} has a decimal comma; write a point"
+    return f"{body[place:].strip()[:_LONGEST]!r} is no word such as X-12.5 or G1"

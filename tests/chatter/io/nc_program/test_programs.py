@@ -59,6 +59,22 @@ def test_incremental_and_absolute(tmp_path):
     assert lengths(found)[3] == pytest.approx(5.0 * math.pi)
 
 
+def test_words_that_are_absolute_or_incremental_by_themselves(tmp_path):
+    """AC(...) and IC(...) of Siemens, in either kind of program; R1 is no comment's bracket."""
+    found = program(
+        tmp_path,
+        'N10 MSG("arc (no words)")\nG90 G1 X=10 Y=IC(5) F600 (a comment)\n'
+        "G3 X20 Y5 I=AC(15) J=AC(5)\nG91 X=AC(30) Y0 I=IC(5)\nG1 X=AC(-1.5) Y2\n"
+        "G90.1 G90 G2 X8.5 Y7 I=IC(5) J=AC(7)\n",
+    )
+    assert ends(found) == [[10, 5, 0], [20, 5, 0], [30, 5, 0], [-1.5, 7, 0], [8.5, 7, 0]]
+    assert lengths(found)[1:3] == pytest.approx([5.0 * math.pi] * 2)
+    assert lengths(found)[4] == pytest.approx(5.0 * math.pi)
+    # counter-clockwise from (10, 5) about (15, 5): below the line
+    middle = found.blocks[1].element.at(np.array(2.5e-3 * math.pi)).position
+    np.testing.assert_allclose(middle, [0.015, 0.0, 0.0], atol=1e-9)
+
+
 @pytest.mark.parametrize("sense", ["G2", "G3"])
 @pytest.mark.parametrize("before", ["X-10 Y5.5", "X-0.1 Y0.2 Z0.3", "X1.1 Y2.2"])
 def test_full_circle_behind_increments(tmp_path, before, sense):
@@ -131,7 +147,7 @@ def test_feed_of_a_revolution_and_exact_stops(tmp_path):
         ("/G0 X1", "line 1: a block that may be skipped"),
         ("G0 X#1", "is no word such as"),
         ("G0 X=R1+5", "is no word such as"),
-        ("G0 X1,5", "line 1: ',5' is no word"),
+        ("G0 X1,5", "line 1: X1,5 has a decimal comma; write a point"),
         ("G0 X1 (open", "line 1: a bracket is open"),
         ("F0 G1 X1", "line 1: F0: a feed above 0"),
         ("G95 F0.1 G1 X1", "line 1: G95: a feed for a revolution needs a spindle speed"),
