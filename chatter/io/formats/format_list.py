@@ -16,6 +16,7 @@ from chatter.io.formats.matlab import MATLAB
 from chatter.io.formats.matrix_market import MATRIX_MARKET
 from chatter.io.formats.mr_configurator import MR_CONFIGURATOR
 from chatter.io.formats.nastran_bulk import NASTRAN_BULK
+from chatter.io.formats.nastran_output import NASTRAN_OUTPUT
 from chatter.io.formats.npz import NPZ
 from chatter.io.formats.parquet import PARQUET
 from chatter.io.formats.records import record_of, stated_record
@@ -33,7 +34,8 @@ FORMATS: Registry[Format] = Registry(
     built_in=(
         *(UFF58, CUTPRO, LVM, SINUMERIK_TRACE, TNCSCOPE, CSV, MR_CONFIGURATOR, NPZ),
         *(MATLAB, XLSX, PARQUET, TDMS, WAV),
-        *(NASTRAN_BULK, ABAQUS_MATRIX, ABAQUS_INPUT, ANSYS_FULL, ANSYS_ARCHIVE, MATRIX_MARKET),
+        *(NASTRAN_BULK, NASTRAN_OUTPUT, ABAQUS_MATRIX, ABAQUS_INPUT),
+        *(ANSYS_FULL, ANSYS_ARCHIVE, MATRIX_MARKET),
     ),
 )
 #: enough of a file to recognise its format

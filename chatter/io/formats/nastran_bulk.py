@@ -67,7 +67,7 @@ def read_matrices(path: Path) -> list[StoredMatrix]:
             f"{path}: has no DMIG entries of a real square matrix" + (f"; {why}" if why else "")
         )
     return [
-        StoredMatrix(*symmetric_from_entries(path, *zip(*of, strict=True)), name, _quantity(name))
+        StoredMatrix(*symmetric_from_entries(path, *zip(*of, strict=True)), name, quantity_of(name))
         for name, of in cells.items()
     ]
 
@@ -93,7 +93,8 @@ def read_nodes(path: Path) -> StoredNodes:
     return StoredNodes(np.array(numbers, dtype=np.int64), np.array(coordinates))
 
 
-def _quantity(name: str) -> MatrixQuantity | None:
+def quantity_of(name: str) -> MatrixQuantity | None:
+    """What a matrix is by the name that Nastran gives it."""
     # K4 is structural damping
     return None if name.startswith("K4") else _QUANTITIES.get(name[0])
 

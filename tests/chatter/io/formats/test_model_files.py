@@ -366,6 +366,51 @@ def test_full_file_of_ansys_by_its_library(tmp_path, monkeypatch):
     np.testing.assert_array_equal(nodes.rows[:, :2], [[0, 1], [2, 3]])
 
 
+@pytest.mark.parametrize("kind", ["op4", "op2"])
+def test_matrices_of_nastran_by_its_library(tmp_path, monkeypatch, kind):
+    """Square ones by their names; K4AA is structural damping, PHG is of shapes, KDICT names nodes.
+
+    The library's answers are made up here; OP4 was tried with pyNastran 1.4.1.
+    """
+    held = {
+        "KAA": SimpleNamespace(data=scipy.sparse.coo_matrix(STIFFNESS), is_matpool=False),
+        "maa ": SimpleNamespace(data=MASS, is_matpool=False),
+        "K4AA": SimpleNamespace(data=0.1 * MASS, is_matpool=False),
+        "PHG": SimpleNamespace(data=MASS[:, :2], is_matpool=False),
+        "KDICT": SimpleNamespace(data=STIFFNESS, is_matpool=True),
+    }
+    modules = {
+        "pyNastran.op2.op2": SimpleNamespace(
+            read_op2=lambda path, **_: SimpleNamespace(matrices=held)
+        ),
+        "pyNastran.op4.op4": SimpleNamespace(read_op4=lambda path: held),
+    }
+    for name in ("pyNastran", "pyNastran.op2", "pyNastran.op4"):
+        modules[name] = SimpleNamespace()
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    path = written(tmp_path, f"part.{kind}", "binary")
+    structure, nodes = imported_model(
+        path, path, nodes=written(tmp_path, "n.csv", "node,x,y,z,ux,uy\n3,0,0,0,1,2\n8,1,0,0,3,4\n")
+    )
+    np.testing.assert_array_equal(structure.stiffness.toarray(), STIFFNESS)
+    np.testing.assert_array_equal(structure.mass, MASS)
+    np.testing.assert_array_equal(nodes.rows[:, :2], [[0, 1], [2, 3]])
+    for name in ("KAA", "maa ", "K4AA"):
+        del held[name]
+    with pytest.raises(
+        StructureError, match=r"part.op. *: has no square .* KDICT names nodes: pun"
+    ):
+        read_matrix(path)
+
+
+def test_without_the_library_of_nastran(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyNastran", None)
+    monkeypatch.setitem(sys.modules, "pyNastran.op4.op4", None)
+    with pytest.raises(StructureError, match=r"part.op4: needs pip install .chatter\[nastran\]"):
+        read_matrix(written(tmp_path, "part.op4", "binary"))
+
+
 @pytest.mark.ansys
 def test_full_file_of_ansys_itself():
     """Natural frequencies that the library's manual prints for the beam that it ships.
