@@ -20,6 +20,7 @@ _OPTIONAL = {
     "openpyxl": "XLSX files",
     "pyarrow": "Parquet files",
     "sounddevice": "sound cards",
+    "av": "compressed sound",
     "dask": "studies on a cluster",
     "skfem": "solid bodies",
 }

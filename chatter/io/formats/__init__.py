@@ -21,6 +21,7 @@ tncscope        traces of drives by TNCscope of HEIDENHAIN
 mr_configurator traces of drives by MR Configurator of Mitsubishi
 tdms            channels of LabVIEW files                                    npTDMS
 wav             sound and other records of recorders                         RIFF WAVE
+compressed_sound sound and video of telephones and recorders                  AAC, MP3, Ogg ...
 matrix_market   matrices of finite element programs                          NIST Matrix Market
 =============== ============================================================ ===================
 

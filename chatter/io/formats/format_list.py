@@ -7,6 +7,7 @@ from chatter.description.registry import Registry
 from chatter.io.files import read_content
 from chatter.io.formats.abaqus import ABAQUS_INPUT, ABAQUS_MATRIX
 from chatter.io.formats.ansys import ANSYS_ARCHIVE, ANSYS_FULL
+from chatter.io.formats.compressed_sound import COMPRESSED_SOUND
 from chatter.io.formats.csv import CSV
 from chatter.io.formats.cutpro import CUTPRO
 from chatter.io.formats.format import CONTENTS, Content, Format
@@ -33,7 +34,7 @@ FORMATS: Registry[Format] = Registry(
     what="file format",
     built_in=(
         *(UFF58, CUTPRO, LVM, SINUMERIK_TRACE, TNCSCOPE, CSV, MR_CONFIGURATOR, NPZ),
-        *(MATLAB, XLSX, PARQUET, TDMS, WAV),
+        *(MATLAB, XLSX, PARQUET, TDMS, WAV, COMPRESSED_SOUND),
         *(NASTRAN_BULK, NASTRAN_OUTPUT, ABAQUS_MATRIX, ABAQUS_INPUT),
         *(ANSYS_FULL, ANSYS_ARCHIVE, MATRIX_MARKET),
     ),
