@@ -118,14 +118,21 @@ def _bars(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
 
 
 def _cells(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
-    """Cells of a map; those of one row are as high as each other."""
+    """Cells of one colour, or of a map; those of one row are as high as each other."""
     del label
     left, right, low, high = (
         _column(source, one) for one in (glyph.left, glyph.right, glyph.bottom, glyph.top)
     )
+    corners = np.stack([left, low, right, low, right, high, left, high], axis=-1).reshape(-1, 4, 2)
+    if isinstance(glyph.fill_color, str):
+        axes.add_collection(
+            PolyCollection(
+                corners, facecolors=glyph.fill_color, alpha=glyph.fill_alpha, linewidths=0.0
+            )
+        )
+        return
     mapper = glyph.fill_color.transform
-    corners = np.stack([left, low, right, low, right, high, left, high], axis=-1)
-    drawn = PolyCollection(corners.reshape(-1, 4, 2), cmap=ListedColormap(mapper.palette))
+    drawn = PolyCollection(corners, cmap=ListedColormap(mapper.palette))
     drawn.set_array(np.asarray(source.data[glyph.fill_color.field], dtype=float))
     drawn.set_clim(mapper.low, mapper.high)
     axes.add_collection(drawn)

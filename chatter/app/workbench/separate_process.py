@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
+import threading
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
+from chatter.app.workbench.compiling_note import told_while_compiling
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress
 
@@ -68,11 +70,16 @@ def _call(there: Connection, function: Callable[..., Any], arguments: tuple[Any,
     """Call the function in its process and send what comes of it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the page ends it
 
+    one_at_a_time = threading.Lock()
+
     def report(stage: str, share: float) -> None:
-        there.send(("progress", (stage, share)))
+        with one_at_a_time:
+            there.send(("progress", (stage, share)))
 
     try:
-        there.send(("done", function(*arguments, report)))
+        with told_while_compiling(lambda text: report(text, 0.0)):
+            found = function(*arguments, report)
+        there.send(("done", found))
     except InputError as error:
         there.send(("input", error.messages))
     except RunError as error:

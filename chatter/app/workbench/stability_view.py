@@ -10,9 +10,11 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
+from chatter.app.above_islands import above_islands
 from chatter.app.depth_axis import end_of_depth_axis
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
+from chatter.app.workbench.compiling_note import told_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE, table_buttons
@@ -71,6 +73,9 @@ class StabilityView:
         self.limit = ColumnDataSource(
             {name: [] for name in ("speed", "depth", "stable", "frequency", "kind")}
         )
+        # above islands of chatter
+        self.regained = ColumnDataSource({"left": [], "right": [], "low": [], "high": []})
+        self.further = ColumnDataSource({"speed": [], "depth": []})
         self.operating = ColumnDataSource({"speed": [], "depth": [], "colour": [], "marker": []})
         self.pockets = ColumnDataSource({"speed": [], "depth": [], "limit": [], "rate": []})
         self.optimum = ColumnDataSource({"speed": [], "depth": []})
@@ -180,7 +185,8 @@ class StabilityView:
 
     def _compute(self, values: dict[str, float], stage: str, go_on: Progress) -> None:
         try:
-            diagram = self._live.diagram(values, stage, go_on)
+            with told_while_compiling(lambda text: self._later(self.message, text)):
+                diagram = self._live.diagram(values, stage, go_on)
             self._show(lambda: self._draw(diagram))
         finally:
             # after the diagram, which is waited for
@@ -215,8 +221,12 @@ class StabilityView:
             # points to a cut above the diagram
             "marker": ["triangle" if above else "circle"],
         }
+        regained, further = above_islands(diagram)
         # what stays is not sent again
-        for source, data in ((self.pockets, pockets), (self.operating, operating)):
+        for source, data in (
+            (self.pockets, pockets), (self.operating, operating),
+            (self.regained, regained), (self.further, further),
+        ):  # fmt: skip
             if source.data != data:
                 source.data = data
         if self._beside is None:
@@ -243,7 +253,8 @@ class StabilityView:
     def _simulate(
         self, values: dict[str, float], speed: float, depth: float, go_on: Progress
     ) -> None:
-        run = self._live.simulation(values, speed, depth, go_on)
+        with told_while_compiling(lambda text: self._later(self.verdict, text)):
+            run = self._live.simulation(values, speed, depth, go_on)
         self._show(lambda: self._draw_run(run))
 
     def _draw_run(self, run: dict[str, Any]) -> None:
@@ -288,6 +299,10 @@ class StabilityView:
             "speed", 0.0, "stable", source=self.limit, color="#9ccc9c", fill_alpha=0.45,
             level="overlay", legend_label="stable",
         )  # fmt: skip
+        drawn.quad("left", "right", "high", "low", source=self.regained, color="#9ccc9c",
+                   line_color=None, fill_alpha=0.45, level="overlay")  # fmt: skip
+        drawn.scatter("speed", "depth", source=self.further, size=3, color="#1f3b57",
+                      level="overlay")  # fmt: skip
         drawn.varea("speed", "low", "high", source=self.band, color="#E69F00", fill_alpha=0.35,
                     level="overlay", legend_label="5 to 95 %")  # fmt: skip
         line = drawn.line("speed", "depth", source=self.limit, line_width=2, color="#1f3b57",
