@@ -23,6 +23,8 @@ _READ_IN: dict[str, Sequence[tuple[float, str, float]]] = {
     "N/m/s": ((0.0, "N/mm/min", 60e-3),),
     "1": ((0.0, "%", 100.0),),
     "1/s": ((0.0, "1/min", 60.0),),
+    # a share by which a frequency changes with the speed
+    "s/rad": ((0.0, "% per 1000 rpm", 1e5 * math.pi / 30.0),),
 }
 #: dimensions that share their SI unit with another, and are read in it: a gain in 1/s, a rate
 #: of wear in 1/min

@@ -62,6 +62,13 @@ def test_parameters_of_effects_are_in_units_of_people(value, unit, row):
     assert parameter_row("offset", one) == ["offset", *row]
 
 
+def test_the_slope_of_a_frequency_is_read_in_percent_per_thousand_revolutions():
+    # 1000 rpm are 104.72 rad/s
+    one = {"value": -5.421e-5, "unit": "s/rad", "ci95": [-5.5e-5, -5.3e-5]}
+    row = ["slope", "-0.5677", "% per 1000 rpm", "-0.576 to -0.555"]
+    assert parameter_row("slope", one) == row
+
+
 def test_tables_of_explain_have_headings():
     """An error table without headings."""
     source = (ROOT / "chatter" / "cli" / "explain.py").read_text(encoding="utf-8")
