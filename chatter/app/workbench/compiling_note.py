@@ -7,19 +7,19 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 NOTE = "compiling what is used for the first time: up to some minutes, once"
-#: s of compiling from which on it is told
+#: s of compiling from which on it is reported
 _PATIENCE = 1.0
 
 
 @contextmanager
-def told_while_compiling(
-    tell: Callable[[str], None], patience: float = _PATIENCE
+def reported_while_compiling(
+    report: Callable[[str], None], patience: float = _PATIENCE
 ) -> Iterator[None]:
-    """Tell, from a thread of its own, when what is done inside waits for the compiler.
+    """Report, from a thread of its own, when what is done inside waits for the compiler.
 
     Parameters
     ----------
-    tell : callable
+    report : callable
         Called with a sentence, once for each time that it begins to wait.
     patience : float
         s between looks.
@@ -29,12 +29,12 @@ def told_while_compiling(
     ended = threading.Event()
 
     def watch() -> None:
-        told = False
+        reported = False
         while not ended.wait(patience):
             waits = is_compiling()
-            if waits and not told:
-                tell(NOTE)
-            told = waits
+            if waits and not reported:
+                report(NOTE)
+            reported = waits
 
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
-from chatter.app.workbench.compiling_note import told_while_compiling
+from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress
 
@@ -77,7 +77,7 @@ def _call(there: Connection, function: Callable[..., Any], arguments: tuple[Any,
             there.send(("progress", (stage, share)))
 
     try:
-        with told_while_compiling(lambda text: report(text, 0.0)):
+        with reported_while_compiling(lambda text: report(text, 0.0)):
             found = function(*arguments, report)
         there.send(("done", found))
     except InputError as error:

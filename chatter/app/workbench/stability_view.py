@@ -14,7 +14,7 @@ from chatter.app.above_islands import above_islands
 from chatter.app.depth_axis import end_of_depth_axis
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
-from chatter.app.workbench.compiling_note import told_while_compiling
+from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE, table_buttons
@@ -185,7 +185,7 @@ class StabilityView:
 
     def _compute(self, values: dict[str, float], stage: str, go_on: Progress) -> None:
         try:
-            with told_while_compiling(lambda text: self._later(self.message, text)):
+            with reported_while_compiling(lambda text: self._later(self.message, text)):
                 diagram = self._live.diagram(values, stage, go_on)
             self._show(lambda: self._draw(diagram))
         finally:
@@ -253,7 +253,7 @@ class StabilityView:
     def _simulate(
         self, values: dict[str, float], speed: float, depth: float, go_on: Progress
     ) -> None:
-        with told_while_compiling(lambda text: self._later(self.verdict, text)):
+        with reported_while_compiling(lambda text: self._later(self.verdict, text)):
             run = self._live.simulation(values, speed, depth, go_on)
         self._show(lambda: self._draw_run(run))
 

@@ -5,7 +5,7 @@ import time
 import numba
 import pytest
 
-from chatter.app.workbench.compiling_note import NOTE, told_while_compiling
+from chatter.app.workbench.compiling_note import NOTE, reported_while_compiling
 
 
 def compiled_anew():
@@ -23,7 +23,7 @@ def compiled_anew():
 
 def test_it_is_told_once_while_code_is_compiled():
     told = []
-    with told_while_compiling(told.append, patience=0.01):
+    with reported_while_compiling(told.append, patience=0.01):
         compiled_anew()
         time.sleep(0.05)
     assert told == [NOTE]
@@ -31,13 +31,13 @@ def test_it_is_told_once_while_code_is_compiled():
 
 def test_nothing_is_told_of_what_is_compiled_already():
     told = []
-    with told_while_compiling(told.append, patience=0.01):
+    with reported_while_compiling(told.append, patience=0.01):
         time.sleep(0.1)
     assert told == []
 
 
 def test_a_failure_inside_goes_on_outside():
     told = []
-    with pytest.raises(ZeroDivisionError), told_while_compiling(told.append):
+    with pytest.raises(ZeroDivisionError), reported_while_compiling(told.append):
         1 / 0  # noqa: B018
     assert told == []
