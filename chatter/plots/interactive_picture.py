@@ -30,7 +30,9 @@ def interactive_picture(figure: Figure) -> str | None:
 
     Lines, areas, points and images are taken up; maps by contours or meshes are not.
     """
+    from bokeh.document import Document
     from bokeh.embed import components
+    from bokeh.io.doc import patch_curdoc
     from bokeh.layouts import column
 
     if any(_is_beyond(axes) for axes in figure.axes):
@@ -39,7 +41,10 @@ def interactive_picture(figure: Figure) -> str | None:
     panels = [_panel(axes, figure) for axes in figure.axes if axes.get_visible()]
     if not panels:
         return None
-    script, place = components(column(panels))
+    own = Document()
+    # the current one may be that of a page whose session has ended
+    with patch_curdoc(own):
+        script, place = components(column(panels))
     return place + script.replace(_GIVES_UP, "attempts > 3000")
 
 

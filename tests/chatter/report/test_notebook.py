@@ -87,6 +87,19 @@ def test_a_diagram_can_be_zoomed_in_a_notebook():
     assert min(np.nanmin(one["y"]) for one in drawn) == pytest.approx(lowest, rel=1e-6)
 
 
+def test_a_picture_is_drawn_after_the_session_of_a_page_has_ended():
+    from bokeh.document import Document
+    from bokeh.io.doc import patch_curdoc
+
+    ended = Document()
+    ended.callbacks.destroy()
+    figure = Figure()
+    figure.subplots().plot([1.0, 2.0], [3.0, 5.0])
+    with patch_curdoc(ended):
+        (line,) = drawn_data(interactive_picture(figure))
+    assert line["y"] == pytest.approx([3.0, 5.0])
+
+
 def test_lines_stand_where_they_were_drawn():
     figure = Figure()
     axes = figure.subplots()
