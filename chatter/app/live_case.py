@@ -14,17 +14,13 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
-from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.neglected_effects import EDGE_FORCES, NeglectedEffect, deciding, notes_of
-from chatter.stability.pockets import Pocket, depth_margin, find_pockets
+from chatter.stability.neglected_effects import NeglectedEffect, deciding, notes_of
+from chatter.stability.pockets import Pocket
+from chatter.stability.pockets_of_limits import pockets_of_limits
 from chatter.stability.registry import chosen_method, fixed_steps
-from chatter.stability.resting_friction import (
-    limits_with_resting_friction,
-    neglected_resting_friction,
-)
 from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
 
 #: stage -> speeds, depths of the grid
@@ -109,8 +105,8 @@ class LiveCase:
         cut, deepest = drawn.case.cut, drawn.max_depth
         pockets: Sequence[Pocket] = ()
         if drawn.stage == "fine":
-            self._neglected = self._left_out(drawn.model, curve)
-            pockets = _pockets_of(drawn, curve, self._neglected)
+            found = pockets_of_limits(drawn.model, self._method, curve, deepest)
+            self._neglected, pockets = found.neglected, found.pockets
         neglected = self._neglected  # in a coarse diagram that of the last fine one
         crossings = self._crossings_of_cut(drawn, curve, progress)
         stable = int((crossings < cut.axial_depth).sum()) % 2 == 0
@@ -130,13 +126,6 @@ class LiveCase:
             },
             "notes": [*drawn.model.notes, *notes_of(neglected)],
         }
-
-    def _left_out(self, model: MillingModel, curve: LimitCurve) -> tuple[NeglectedEffect, ...]:
-        """What linear limits leave out, as `chatter.lobes` states it."""
-        return (
-            *neglected_resting_friction(model),
-            *neglected_in_steady_cut(model, self._method, curve.critical_depth),
-        )
 
     def _crossings_of_cut(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> Array:
         """Limits at the speed of the cut, m; in a coarse diagram those of the nearest speed."""
@@ -197,18 +186,6 @@ class _Drawn(NamedTuple):
     model: MillingModel
     stage: str
     max_depth: float  # m
-
-
-def _pockets_of(
-    drawn: _Drawn, curve: LimitCurve, neglected: Sequence[NeglectedEffect]
-) -> Sequence[Pocket]:
-    """Pockets that keep what is left out in hand, as `chatter.lobes` has them."""
-    cut, case = drawn.case.cut, drawn.case
-    area = case.width_of_cut * cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
-    zero_order = zero_order_of(drawn.model, curve.spindle_speed)
-    limits = limits_with_resting_friction(drawn.model, zero_order).bounded(curve.critical_depth)
-    margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
-    return find_pockets(curve.spindle_speed, limits, drawn.max_depth, area, depth_margin=margin)
 
 
 def _pocket(found: Pocket) -> dict[str, float | None]:

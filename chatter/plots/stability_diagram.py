@@ -17,6 +17,7 @@ from chatter.description.arrays import Array, IntegerArray
 from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
 from chatter.plots import style
+from chatter.plots.depth_axis import ABOVE_CUT, end_of_depth_axis
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
@@ -34,10 +35,6 @@ _FILLS = (style.STABLE_FILL, style.UNSTABLE_FILL, style.NOT_SEARCHED_FILL)
 #: letters of a line below the picture
 _LINE_LENGTH = 100
 _NO_POCKET = "no pocket between these speeds"
-#: depth shown over the highest limit, the same where some speeds have none, and over the cut
-_ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
-#: a cut so many times as deep as the limits that are shown is marked at the upper edge
-_FAR_ABOVE = 2.5
 #: height of that mark and of the foot of its arrow, in that of the picture
 _EDGE, _FOOT = 0.9, 0.92
 #: more values than this make a line without markers
@@ -151,19 +148,10 @@ def _kept(before: Array, after: Array) -> tuple[Array, Array]:
 
 
 def _top(diagram: StabilityDiagram) -> float:
-    """Highest depth shown, m: a little above the limits and the cut, as far as was searched.
-
-    Where speeds have no limit, the search is shown that far above the others.
-    """
-    found = [depth for crossings in diagram.limits.crossings for depth in crossings]
-    searched = float(np.nanmax(diagram.max_depth))
-    cut = _ABOVE_CUT * diagram.case.cut.axial_depth
-    if not found:
-        return max(searched, cut)
-    above = _ABOVE_GAPS if np.isinf(diagram.limits.critical_depth).any() else _ABOVE_LIMITS
-    shown = min(above * max(found), searched)
-    # lobes that a deep cut presses to the ground cannot be read
-    return shown if diagram.is_over_speed and cut > _FAR_ABOVE * shown else max(shown, cut)
+    """Highest depth shown, m; over other parameters than the speed the cut is always in it."""
+    cut = diagram.case.cut.axial_depth
+    shown = end_of_depth_axis(diagram.limits.crossings, float(np.nanmax(diagram.max_depth)), cut)
+    return shown if diagram.is_over_speed else max(shown, ABOVE_CUT * cut)
 
 
 def _point_above(axes: Axes, cut: Cut, top: float, colour: str) -> None:

@@ -1,7 +1,5 @@
 """Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
 
-import math
-
 import numpy as np
 
 from chatter.description.arrays import Array
@@ -10,19 +8,15 @@ from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes
 from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
-from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
+from chatter.stability.forced_vibration import notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lowest_limit import lowest_limit
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.neglected_effects import EDGE_FORCES, notes_of
-from chatter.stability.pockets import depth_margin, find_pockets
+from chatter.stability.neglected_effects import notes_of
+from chatter.stability.pockets_of_limits import pockets_of_limits
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
-from chatter.stability.resting_friction import (
-    limits_with_resting_friction,
-    neglected_resting_friction,
-)
 from chatter.stability.search_range import (
     axial_depths,
     beyond_the_cut,
@@ -72,19 +66,11 @@ def lobes(
     if grid:
         begin(progress, "spectral radius at all speeds and depths")
         speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-        found = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
-        radius = found.reshape(len(depths), len(speeds))
-    removal_area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+        all_points = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
+        radius = all_points.reshape(len(depths), len(speeds))
     begin(progress, "what linear methods leave out")
-    neglected = (
-        *neglected_resting_friction(model),
-        *neglected_in_steady_cut(model, chosen, limits.critical_depth),
-    )
-    margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
-    at_rest = limits_with_resting_friction(model, zero_order)
-    pockets = find_pockets(
-        speeds, at_rest.bounded(limits.critical_depth), max_depth, removal_area, depth_margin=margin
-    )
+    found = pockets_of_limits(model, chosen, limits, max_depth, zero_order)
+    deepest_pocket = max([0.0, *(pocket.axial_depth for pocket in found.pockets)])
     begin(progress, "limit at the speed of the cut")
     operating = _operating_limit(model, chosen, max_depth, progress)
     begin(progress, "lowest limit between the speeds")
@@ -96,16 +82,16 @@ def lobes(
         limits=limits,
         max_depth=np.full(len(speeds), max_depth),
         notes=(
-            *model.notes, *notes_of(neglected),
+            *model.notes, *notes_of(found.neglected),
             *notes_on_dashpot(model, chosen), *notes_on_tolerance(model, limits),
-            *question_of_flutes(case, max([0.0, *(pocket.axial_depth for pocket in pockets)])),
+            *question_of_flutes(case, deepest_pocket),
         ),
         zero_order=zero_order,
-        pockets=pockets,
-        neglected=neglected,
+        pockets=found.pockets,
+        neglected=found.neglected,
         operating=operating,
         lowest=lowest,
-        resting_friction=at_rest.of_lowest,
+        resting_friction=found.resting_friction,
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
         grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),

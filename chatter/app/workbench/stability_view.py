@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
 from chatter.app.above_islands import above_islands
-from chatter.app.depth_axis import end_of_depth_axis
+from chatter.app.depth_axis import steady_end_of_depth_axis
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.compiling_note import reported_while_compiling
@@ -197,7 +197,9 @@ class StabilityView:
         none = float("nan")
         deepest = diagram["max_axial_depth_mm"]
         if self._beside is None:
-            self.top = deepest if self._depth_is_stated() else end_of_depth_axis(diagram, self.top)
+            self.top = (
+                deepest if self._depth_is_stated() else steady_end_of_depth_axis(diagram, self.top)
+            )
         top = self.top if self._beside is None else self._beside.top
         self.limit.data = {
             "speed": diagram["spindle_speed_rpm"],

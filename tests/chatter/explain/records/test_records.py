@@ -279,17 +279,33 @@ def test_a_run_that_chatters_is_set_aside(case, cut_off, tmp_path):
     assert [one.run for one in usable.findings if one.severity == RUN] == ["run3.csv"]
 
 
+def change_from_rest(signals, turn, revolutions):
+    """Change of the last channels, motions, from some revolutions after rest to the last one."""
+    within = np.arange(400) / 400.0 * turn
+    last = int(signals.time[-1] / turn) - 1
+    early, late = (
+        np.array([np.interp(within + k * turn, signals.time, one) for one in signals.channels[2:]])
+        for k in (revolutions, last)
+    )
+    return np.linalg.norm(early - late) / np.linalg.norm(late)
+
+
 @pytest.mark.parametrize(("kept", "turns", "left_out"), [(45.6, 12, True), (60.6, 45, False)])
 def test_a_cut_near_its_limit_is_set_aside_where_its_record_is_short(
     case, tmp_path, kept, turns, left_out
 ):
-    """Of its transient a tenth is left 12 revolutions after rest, a hundredth after 45."""
+    """Of its transient 3 % are left 12 revolutions after rest, and not after 45.
+
+    By the independent integration, against its last revolution.
+    """
     runs, depths = [], (0.6e-3, 0.5e-3, 0.85 * 2.56e-3)
     for number, depth in enumerate(depths):
         speed = 2000.0 * TURN / 60.0
         cut = Cut(speed, 0.08e-3, depth, 6e-3, *arc_of("down", 6e-3, 10e-3), 0.0)
         signals = run(plant(), cut, (kept + turns) * TURN / speed)
         first = int(kept * TURN / speed * SAMPLING)
+        changes = change_from_rest(signals, TURN / speed, turns)
+        assert (changes > 0.03) == (left_out and depth == depths[-1])
         rows = as_in_the_case(signals.channels[:, first:])
         rows["time"] = signals.time[first:] - signals.time[first]
         overrides = {"cut.spindle_speed": "2000 rpm", "cut.axial_depth": depth}
