@@ -224,7 +224,7 @@ class Milling(Kind):
                 name = path.partition(".")[2].replace("_", " ")
                 number = value * factor * scale
                 digits = f"{number:.0f}" if unit == "rpm" else f"{number:.3g}"
-                words = f"a cut like {run.name} with a {name} of {digits} {unit}"
+                words = f"a cut like {run.name} with the {name} at {digits} {unit}"
                 trials.append(Trial(words, trial, levels))
         return trials
 
