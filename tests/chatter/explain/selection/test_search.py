@@ -13,6 +13,7 @@ from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
+from chatter.explain.records.steady_record import SteadyRecord
 from chatter.explain.selection import candidates
 from chatter.explain.selection.candidates import fitted, stage_with
 from chatter.explain.selection.established import gain_in_most, stages_of_kept_effects
@@ -382,3 +383,21 @@ def test_runs_in_which_more_than_one_condition_varies_are_held_out_by_their_orde
     speeds = ["5999.8 rpm", "5999.7 rpm", "5999.6 rpm"]
     assert held_out(series(25, 75, 125, spindle_speed=speeds)) == ["75"]
     assert held_out(series(25, 25, 75, 125)) == ["75"]
+
+
+def settling_within(*revolutions):
+    """Cuts of different depths and feeds, each with the revolutions until it has settled."""
+    depths = [f"{1 + number} mm" for number in range(len(revolutions))]
+    made = series(*range(50, 50 + len(revolutions)), axial_depth=depths)
+    records = [SteadyRecord({}, None, one, 60) for one in revolutions]
+    return made.with_runs(
+        [run.with_record(one) for run, one in zip(made.runs, records, strict=True)]
+    )
+
+
+def test_the_cut_nearest_to_its_limit_is_fitted():
+    assert held_out(settling_within(6, 6, 6, 6, 6, 6)) == ["52", "55"]
+    assert held_out(settling_within(6, 6, 40, 6, 6, 6)) == ["51", "55"]
+    assert held_out(settling_within(6, 12, 6, 6, 6, 18)) == ["52", "54"]
+    # another that is fitted asks for as much
+    assert held_out(settling_within(40, 6, 40, 6, 6, 6)) == ["52", "55"]
