@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -190,7 +191,16 @@ class Case(Description):
     def _read_machine(self) -> MachineFile:
         from chatter.description.machine.machine_file import load_machine
 
-        return load_machine(self.structure.machine)
+        return load_machine(self.structure.machine, self._machine_name())
+
+    def _machine_name(self) -> str:
+        """Name of the machine file for people, who know where the case file lies."""
+        path = self.structure.machine
+        if not path.is_relative_to(self.folder):
+            return str(path)
+        # a case that was opened by a whole path is no reason to spell out that of the machine
+        beside = Path() if Path(self.name).is_absolute() else Path(self.name).parent
+        return os.path.normpath(beside / path.relative_to(self.folder))
 
     @property
     def on_machine(self) -> bool:

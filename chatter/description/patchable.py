@@ -166,8 +166,8 @@ class Description(Section):
         return cls._of_document(document, name, Path(folder))
 
     @classmethod
-    def from_file(cls, path: str | Path) -> Self:
-        """Read a file.
+    def from_file(cls, path: str | Path, name: str = "") -> Self:
+        """Read a file, which messages call by its path, or by another name.
 
         Raises
         ------
@@ -176,9 +176,10 @@ class Description(Section):
         """
         path = path_given(path, f"{with_article(cls.NOUN)} file")
         text = read_text(path, cls.NOUN)
-        document = parse_document(text, str(path), cls.NOUN)
-        refuse_bare_numbers(cls, document.unwrap(), str(path))
-        return cls._of_document(document, str(path), path.parent, is_foreign=not was_written(text))
+        name = name or str(path)
+        document = parse_document(text, name, cls.NOUN)
+        refuse_bare_numbers(cls, document.unwrap(), name)
+        return cls._of_document(document, name, path.parent, is_foreign=not was_written(text))
 
     @classmethod
     def from_mended_file(cls, path: str | Path, values: Mapping[str, Any]) -> Self:

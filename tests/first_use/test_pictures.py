@@ -151,6 +151,24 @@ def test_the_legend_of_frfs_covers_no_curve():
     assert math.isfinite(legend.get_window_extent().height)
 
 
+def test_frfs_of_two_units_have_a_panel_each():
+    """rad/(N m) and m/N on one axis, six powers of ten apart, made both flat."""
+    from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
+    from dynamics.frf.container import Frf
+
+    frequency = np.linspace(10.0, 500.0, 200)
+    one = Frf(frequency, 1e-7 / (1.0 - (frequency / 200.0) ** 2 + 0.05j))
+    curves = (
+        FrfCurve("x", "", one),
+        FrfCurve("motor", "", one, excited="torque", read="rotation"),
+        FrfCurve("y", "", one),
+    )
+    figure = plot_frf(FrfResult("machine", curves))
+    lines = {axes.get_ylabel(): [line.get_label() for line in axes.lines] for axes in figure.axes}
+    assert lines["receptance [um/N]"] == ["x", "y"]
+    assert lines["receptance [urad/(N*m)]"] == ["motor"]
+
+
 def test_limits_go_on_where_stable_intervals_come_or_go_beside_them():
     """A pale strip at one speed, without a curve along it: an island that opens there."""
     before, after = np.array([0.67]), np.array([0.29, 0.51, 0.71])

@@ -234,7 +234,7 @@ class CaseView:
         self.message.object = "\n".join([*general, *hidden])
 
     def _short(self, messages: tuple[str, ...]) -> str:
-        return "\n".join(messages).replace(f"{self._session.root}/", "")
+        return self._session.short("\n".join(messages))
 
 
 class NewCase:
@@ -266,7 +266,7 @@ class NewCase:
             self._write(name)
             self._session.open(name)
         except InputError as error:
-            self.message.object = str(error).replace(f"{self._session.root}/", "")
+            self.message.object = self._session.short(error)
             return
         self.message.object, self._card.collapsed = "", True
         self._made(name)

@@ -203,7 +203,9 @@ class CutView:
         self._pictures.visible, self._carved.visible = True, removed is not None
         self._before.objects = []
         told = result.summary()
-        self.message.object = "\n".join([f"{told['verdict']}: {told['reason']}", *result.notes])
+        self.message.object = self._session.short(
+            "\n".join([f"{told['verdict']}: {told['reason']}", *result.notes])
+        )
         self._draw_signals(result)
         self._draw_motion(result)
         feed = result.case.cut.feed_per_tooth * result.case.tool.teeth
@@ -272,7 +274,7 @@ class CutView:
         return content
 
     def _show_message(self, text: str) -> None:
-        told = text.replace(f"{self._session.root}/", "")
+        told = self._session.short(text)
         self._show(lambda: setattr(self.message, "object", told))
 
     def _make_figures(self) -> dict[str, Any]:

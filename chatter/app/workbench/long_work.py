@@ -10,6 +10,7 @@ import panel as pn
 
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.separate_process import in_own_process
+from chatter.app.workbench.session import without_folder
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.progress import Progress
 
@@ -61,5 +62,5 @@ class LongWork:
 
     def show_message(self, text: str) -> None:
         """Show a sentence, with names relative to the folder."""
-        told = str(text).replace(f"{self._root}/", "")
+        told = without_folder(text, self._root)
         self._show(lambda: setattr(self.message, "object", told))

@@ -60,7 +60,10 @@ class MachineView:
             visible=False,
         )
         self.work = LongWork(session.root, show)
-        self.call, self._result = pn.Column(), pn.Column()
+        self.call = pn.Column()
+        #: what each button has left, the newest above
+        self._left: dict[str, list[Any]] = {}
+        self._results = pn.Column()
         self.frf_button.on_click(lambda _: self.start("frf"))
         self.move_button.on_click(lambda _: self.start("move"))
         self.shapes_button.on_click(lambda _: self.start("mode_shapes"))
@@ -81,7 +84,7 @@ class MachineView:
             self.work.message,
             pn.Row(choice, self._animation),
             self.call,
-            self._result,
+            self._results,
         )
 
     def refresh(self) -> None:
@@ -142,11 +145,11 @@ class MachineView:
         self.tests.options, self.move.options = [], []
         self._shapes, self.rest.data, self.moved.data = {}, _nothing(), _nothing()
         self._animation.visible = False
-        self._result.objects = []
+        self._left, self._results.objects = {}, []
         if self.file.value is None:
             return
         try:
-            machine = chatter.load_machine(self._session.path(self.file.value))
+            machine = chatter.load_machine(self._session.path(self.file.value), self.file.value)
         except InputError as error:
             self.work.show_message(str(error))
             return
@@ -169,10 +172,11 @@ class MachineView:
         folder = self._folder(name)
         if name == "mode_shapes":
             self._take_shapes(folder / "mode-shapes.npz")
-            return
         found = result_panel(folder)
         if found:
-            self._result.objects = found
+            self._left.pop(name, None)
+            self._left = {name: found, **self._left}
+            self._results.objects = [part for parts in self._left.values() for part in parts]
 
     def _take_shapes(self, path: Path) -> None:
         if not path.is_file():

@@ -93,7 +93,7 @@ class Workbench:
         try:
             self.session.open(name)
         except InputError as error:
-            self.message.object = str(error).replace(f"{self.session.root}/", "")
+            self.message.object = self.session.short(error)
 
     def _opened(self, name: str) -> None:
         self.choice.options = self.session.case_names()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -64,6 +65,10 @@ class Session:
         if "\0" in name or not found.is_relative_to(self.root):
             raise InputError(f"{name}: lies outside of the folder {self.root.name}")
         return found
+
+    def short(self, text: object) -> str:
+        """Sentence with the names of files relative to the folder."""
+        return without_folder(text, self.root)
 
     def new_path(self, name: str) -> Path:
         """Path of a case file that is not there yet; InputError where it is, or for other names."""
@@ -215,6 +220,16 @@ class Session:
         for name, content in files.items():
             self.path(f"{folder}/{name}").write_bytes(content)
         return target
+
+
+def without_folder(text: object, folder: Path) -> str:
+    """Sentence with the names of files relative to a folder."""
+    return str(text).replace(f"{folder}{os.sep}", "")
+
+
+def root_of_results(folder: Path) -> Path:
+    """Folder of the session that a folder of `Session.results` belongs to."""
+    return folder.parents[2]
 
 
 def checked_name(name: str, extensions: Sequence[str]) -> str:

@@ -18,6 +18,7 @@ from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE, table_buttons
+from chatter.app.workbench.session import without_folder
 from chatter.app.workbench.table_files import PageTable
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import Case
@@ -237,7 +238,8 @@ class StabilityView:
             )
             self._lobes.y_range.update(start=0.0, end=top)
         self._update_legend()
-        self.message.object = "; ".join([*_DOUBT[: not cut["certain"]], *diagram["notes"]])
+        told = "; ".join([*_DOUBT[: not cut["certain"]], *diagram["notes"]])
+        self.message.object = without_folder(told, self._live.case.folder)
 
     def _update_legend(self) -> None:
         """Name what is drawn; an entry that comes is painted, one of a source that fills is not."""

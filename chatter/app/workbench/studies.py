@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 import chatter
 from chatter.app.workbench.residual_file import RESIDUALS, write_residuals
 from chatter.app.workbench.separate_process import Report
-from chatter.app.workbench.session import CaseText, read_call, write_call
+from chatter.app.workbench.session import (
+    CaseText,
+    read_call,
+    root_of_results,
+    without_folder,
+    write_call,
+)
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.explain.next_measurement.proposal import in_words as next_in_words
@@ -140,6 +146,10 @@ def run_study(
     save_result(result, folder, {"title": study.label, **same_call(name, case.name, options)})
 
 
+#: what is computed of a machine, and its heading
+MACHINE_WORK = {"frf": "FRFs", "move": "Move", "mode_shapes": "Mode shapes"}
+
+
 def run_machine(
     name: str,
     file: Path,
@@ -149,19 +159,21 @@ def run_machine(
     report: Report,
 ) -> None:
     """Compute FRFs, a move or the mode shapes of a machine file and write their files."""
+    title = MACHINE_WORK[name]
 
     def progress(done: int, total: int) -> None:
-        report(name, done / total if total else 0.0)
+        report(title, done / total if total else 0.0)
 
-    report(f"{name}: starting", 0.0)
-    machine = chatter.load_machine(file)
+    report(f"{title}: starting", 0.0)
+    machine = chatter.load_machine(file, file.relative_to(root_of_results(folder)).as_posix())
     if name == "frf":
         result: Any = chatter.frf(machine, list(tests) or None, progress)
     elif name == "move":
         result = chatter.move(machine, tests[0], progress)
     else:
         result = chatter.mode_shapes(machine)
-    save_result(result, folder, {"title": f"{name} {', '.join(tests)}", **call})
+    told = f"{title}: {', '.join(tests)}" if tests else title
+    save_result(result, folder, {"title": told, **call})
 
 
 def run_measurement(
@@ -244,5 +256,5 @@ def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:
     else:
         drawn.savefig(folder / PICTURE)
     sentences = list(result.sentences()) if hasattr(result, "sentences") else []
-    notes = [str(one) for one in getattr(result, "notes", ())]
+    notes = [without_folder(one, root_of_results(folder)) for one in getattr(result, "notes", ())]
     write_call(folder, {**call, "sentences": sentences, "notes": notes})

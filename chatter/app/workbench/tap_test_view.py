@@ -64,6 +64,9 @@ class TapTestView:
         self.files: list[Path] = []
         self.poles: list[tuple[float, float]] = []
         self.upload = dropper(self.take, "Hammer records or FRF files")
+        self.upload.begun = self._drop_begins
+        #: folder that the files of a drop go to, whatever is chosen while they come
+        self._dropped_into: str | None = None
         self.direction = pn.widgets.Select(label="Direction", options=["x", "y", "z"], width=100)
         self.side = pn.widgets.Select(label="Side", options=["tool", "workpiece"], width=140)
         self.columns = pn.widgets.TextInput(
@@ -132,15 +135,24 @@ class TapTestView:
 
     def take(self, files: Mapping[str, bytes]) -> None:
         """Write uploaded files beside the case and fit modes to them."""
+        name = self._dropped_into or self._folder_name()
         try:
-            folder = self._session.store(self._folder_name(), files, readable_extensions())
+            folder = self._session.store(name, files, readable_extensions())
         except InputError as error:
             self.message.object = str(error)
+            return
+        if name != self._folder_name():
+            self.upload.forget()
+            names = ", ".join(sorted(files))
+            self.message.object = f"{names}: in {name}, the direction as they were dropped"
             return
         self.files = [folder / name for name in sorted(files)]
         # faults found before are no ticks of a person: files come one by one
         self.records, self.test = {}, None
         self.fit()
+
+    def _drop_begins(self) -> None:
+        self._dropped_into = self._folder_name()
 
     def open_folder(self) -> None:
         """Take up the records that lie in the folder of the direction, as of a session before."""
@@ -243,6 +255,8 @@ class TapTestView:
             self.upload.forget()  # those are of the direction before
             self.files, self.records, self.test = [], {}, None
             self._record_list.objects = []
+            self._fitting = {}  # what is fitted still is of the direction before
+            self._hold_direction(False)
             self.open_folder()
         elif self.files:
             self.fit()
@@ -294,7 +308,7 @@ class TapTestView:
         try:
             test = chatter.modes(**arguments)
         except InputError as error:
-            told = self._short(str(error))
+            told = self._session.short(str(error))
             self._show(lambda: setattr(self.message, "object", told))
             return
         go_on(0, 0)
@@ -304,6 +318,9 @@ class TapTestView:
         self._show(lambda: self._draw(test, arguments, folder))
 
     def _draw(self, test: ModalTest, arguments: Mapping[str, Any], folder: Path) -> None:
+        self._fitted[arguments["side"], arguments["direction"]] = test
+        if self._fitting is not arguments:
+            return
         self.test = test
         self._results.visible = True
         self._draw_functions(test)
@@ -312,15 +329,10 @@ class TapTestView:
         self.modes.object = as_html(self.mode_table())
         for button in self.tables:
             button.disabled = False
-        self._fitted[arguments["side"], arguments["direction"]] = test
         self.into_case.disabled = not test.fit.modes
         self._files.objects = downloads(folder)
         self.same_call.object = self._same_call(arguments)
-        self.message.object = self._short("\n".join(test.notes))
-
-    def _short(self, text: str) -> str:
-        """Message with names relative to the folder."""
-        return text.replace(f"{self._session.root}/", "")
+        self.message.object = self._session.short("\n".join(test.notes))
 
     def _draw_functions(self, test: ModalTest) -> None:
         frf, model, band = test.fit.frfs[0], test.fit.models[0], test.fit.band
@@ -387,7 +399,8 @@ class TapTestView:
     def _same_call(self, arguments: Mapping[str, Any]) -> str:
         given = dict(arguments)
         paths = given.pop("paths")
-        names = [self._short(str(one)) for one in (paths if isinstance(paths, list) else [paths])]
+        listed_paths = paths if isinstance(paths, list) else [paths]
+        names = [self._session.short(one) for one in listed_paths]
         words = ["chatter", "modes", *names]
         for key in ("direction", "side", "columns"):
             words += [f"--{key}", given[key]] if key in given else []
@@ -400,7 +413,7 @@ class TapTestView:
         return f"{shlex.join(words)}\nchatter.modes({called!r}{listed})"
 
     def _later(self, text: str) -> None:
-        told = self._short(text)
+        told = self._session.short(text)
         self._show(lambda: setattr(self.message, "object", told))
 
     def _make_figures(self) -> tuple[Any, Any, Any, Any]:

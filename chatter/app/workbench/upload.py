@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +12,9 @@ from chatter.app.workbench.session import LARGEST_FILE, LARGEST_UPLOAD, MOST_FIL
 
 #: bytes of a part of a file, in one message
 PART = 512 * 1024
+#: s without a part of a file after which the next file is of another drop: the page sends those of
+#: one without a pause
+_PAUSE = 1.0
 
 
 class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-ignore]
@@ -19,6 +23,9 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
     def __init__(self, **given: Any) -> None:
         super().__init__(**given)
         self._forgotten: dict[str, Any] = {}
+        self._last_part = -_PAUSE
+        #: called as the first file of a drop begins to come
+        self.begun: Callable[[], None] = lambda: None
 
     def forget(self) -> None:
         """Hand over what stands in the list now no more; a file that is dropped again is new."""
@@ -40,6 +47,14 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
             return
         if data.get("chunk") != 1 and name not in self._file_buffer:
             return  # rest of a file that was given up
+        if not self._file_buffer and time.monotonic() - self._last_part > _PAUSE:
+            self.begun()
+        self._take_part(event, name, part)
+        self._last_part = time.monotonic()
+
+    def _take_part(self, event: Any, name: str, part: bytes) -> None:
+        """Take a part of a file, unless the files become too large or too many by it."""
+        data = event.data
         waiting = sum(len(one) for one in self._file_buffer.get(name, ())) + len(part)
         together = sum(len(one) for parts in self._file_buffer.values() for one in parts)
         together += sum(map(len, self.value.values())) + len(part)

@@ -82,7 +82,9 @@ class FrfSection(StateSection):
         2000, description="of the linearised response"
     )
     period: quantity("time", above=0.0) = Field(
-        1.0, description="of a periodic excitation, or from blow to blow"
+        1.0,
+        description="of a periodic excitation, or from blow to blow; where it is not stated, twice "
+        "it and so on, up to 16 s, for blows that have not died away",
     )
     averages: whole_number(1, 10_000, "numbers of averages") = 3
     settling: quantity("time", at_least=0.0) = Field(0.5, description="before the excitation")

@@ -207,12 +207,12 @@ class MachineFile(Description):
             raise InputError(problems)
 
 
-def load_machine(path: str | Path) -> MachineFile:
-    """Read a machine file.
+def load_machine(path: str | Path, name: str = "") -> MachineFile:
+    """Read a machine file, which messages call by its path, or by another name.
 
     Raises
     ------
     InputError
         If the file cannot be read or describes no machine; all problems found are in it.
     """
-    return MachineFile.from_file(path)
+    return MachineFile.from_file(path, name)

@@ -41,6 +41,8 @@ _AXES = ("x", "y", "z", "rx", "ry", "rz")
 _RESTING = 1e-12
 #: steps of a move in time: what its signals take up fits no memory beyond
 _MOST_STEPS = 1e9
+#: s, from blow to blow where no period is stated
+_LONGEST_PERIOD = 16.0
 #: instants at which a move is looked at for how far it goes
 _SAMPLES = 2000
 
@@ -172,7 +174,8 @@ def _one_frf(
             section.spindle_speed or 0.0,
             section.at_angle,
         )
-        tested = frf_by_test(machine, file.step, test, progress)
+        chosen = "period" not in section.model_fields_set
+        tested = frf_by_test(machine, file.step, test, progress, _LONGEST_PERIOD * chosen)
     return FrfCurve(
         name,
         in_words(section),

@@ -1,9 +1,7 @@
-"""Mode shapes of a machine, drawn by the corners of its bodies and the nodes of its beams."""
+"""Mode shapes of a machine, drawn by the outlines of its parts."""
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +14,7 @@ from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.machine_or_path import takes_machine_or_path
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, write_results
+from chatter.simulation.virtual_tests.outline import outlines
 from dynamics.reduction.modal_truncation import undamped_modes
 
 if TYPE_CHECKING:
@@ -23,14 +22,6 @@ if TYPE_CHECKING:
 
 #: modes below this are motions of the whole that nothing resists, Hz
 _RIGID = 0.5
-_BEAM_POINTS = 13
-#: corners of a block, of which neighbours differ in one place, are its edges
-_CORNERS = tuple(itertools.product((-0.5, 0.5), repeat=3))
-_EDGES = tuple(
-    (a, b)
-    for a, b in itertools.combinations(range(8), 2)
-    if sum(p != q for p, q in zip(_CORNERS[a], _CORNERS[b], strict=True)) == 1
-)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,10 +60,13 @@ class ModeShapes(NotebookResult):
         return presentation("plots.mode_shapes").plot_mode_shapes(self)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write summary.json, mode-shapes.npz and mode-shapes.png."""
-        written = write_results(
-            folder, {"summary.json": as_json(self.summary())}, {"mode-shapes.png": self.plot()}
-        )
+        """Write summary.json, frequencies.csv, mode-shapes.npz and mode-shapes.png."""
+        rows = [f"{number},{f:.6g}" for number, f in enumerate(self.frequency, start=1)]
+        texts = {
+            "summary.json": as_json(self.summary()),
+            "frequencies.csv": "\n".join(["mode,natural frequency [Hz]", *rows]) + "\n",
+        }
+        written = write_results(folder, texts, {"mode-shapes.png": self.plot()})
         path = Path(folder) / "mode-shapes.npz"
         arrays = ("frequency", "points", "shapes", "lines")
         np.savez(path, **{name: getattr(self, name) for name in arrays})
@@ -124,29 +118,7 @@ def _outline(file: MachineFile) -> tuple[list[PartPoint], list[tuple[int, int]]]
     """Part and place (m) of every point that is drawn, and which are joined."""
     places: list[PartPoint] = []
     lines: list[tuple[int, int]] = []
-    for name, at, joined in (*_blocks(file), *_beams(file)):
-        lines += [(len(places) + a, len(places) + b) for a, b in joined]
-        places += [(name, one) for one in at]
+    for one in outlines(file):
+        lines += [(len(places) + a, len(places) + b) for a, b in one.lines]
+        places += [(one.part, point) for point in one.points]
     return places, lines
-
-
-Outline = tuple[str, NDArray[np.float64], tuple[tuple[int, int], ...]]
-
-
-def _blocks(file: MachineFile) -> Iterator[Outline]:
-    for name, body in file.body.items():
-        centre = np.asarray(body.centre, dtype=np.float64)
-        if body.size is None:
-            yield name, centre[None, :], ()
-        else:
-            yield name, centre + np.array(_CORNERS) * np.asarray(body.size), _EDGES
-
-
-def _beams(file: MachineFile) -> Iterator[Outline]:
-    joined = tuple((k, k + 1) for k in range(_BEAM_POINTS - 1))
-    for name, beam in file.beam.items():
-        axis = np.asarray(beam.axis, dtype=np.float64)
-        length = sum(one.length for one in beam.segments)
-        stations = np.linspace(0.0, length, _BEAM_POINTS)
-        origin = np.asarray(beam.origin, dtype=np.float64)
-        yield name, origin + stations[:, None] * (axis / np.linalg.norm(axis)), joined

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 
 #: share of its way by which an axis is left behind
 _LEFT_BEHIND = 0.5
+#: errors of the summary, and where they are read
+_PLACES_OF_ERRORS = {"motor_error_um": "motor", "tracking_error_um": "scale",
+                     "tool_error_um": "tool"}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,10 +131,12 @@ class MoveResult(BriefRepr, NotebookResult):
         told = [] if contour is None else [f"largest contour error {to_digits(contour, 4)} um"]
         for axis, largest in summary["axes"].items():
             effort = f"{to_digits(largest['effort'], 4)} {largest['effort_unit'].replace('*', ' ')}"
-            told.append(
-                f"axis {axis}: tracking error at most {to_digits(largest['tracking_error_um'], 4)} "
-                f"um, effort at most {effort}"
+            errors = ", ".join(
+                f"{to_digits(largest[key], 4)} um at the {place}"
+                for key, place in _PLACES_OF_ERRORS.items()
+                if key in largest
             )
+            told.append(f"axis {axis}: tracking error at most {errors}; effort at most {effort}")
         return told + self.left_behind()
 
     def plot(self) -> Figure:

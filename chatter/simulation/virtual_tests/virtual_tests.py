@@ -6,7 +6,7 @@ read as a velocity: with friction a blow leaves a lasting displacement, which ne
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from dynamics.frf.excitation.holds import FIRST_ORDER_HOLD, ZERO_ORDER_HOLD, Hol
 from dynamics.frf.excitation.multisine import full_lines, multisine, random_phases
 from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods, joint_input_output_frf
 from dynamics.frf.excitation.signal import ExcitationError, PeriodicSignal, PulseTrain
-from dynamics.frf.excitation.transient import cut_at_pulses, frf_of_transients
+from dynamics.frf.excitation.transient import NotDiedAwayError, cut_at_pulses, frf_of_transients
 from dynamics.machine.description import Machine
 from dynamics.trajectory.periodic import ConstantSpeedMove
 from dynamics.trajectory.set_points import SetPoints, set_points
@@ -117,15 +117,26 @@ BY_TORQUE = ("torque impulse", "torque multisine")
 
 
 def frf_by_test(
-    machine: Machine, step: float, test: FrfTest, progress: Progress = no_progress
+    machine: Machine,
+    step: float,
+    test: FrfTest,
+    progress: Progress = no_progress,
+    longest_period: float = 0.0,
 ) -> Frf:
     """Receptance of a machine by a test in time.
 
-    Its coherence is there where the test has several averages. InputError if the test makes no
-    sense on this machine, RunError if the machine runs away; step in s.
+    Its coherence is there where the test has several averages. Blows after which the machine
+    vibrates for longer than `longest_period`, s, are refused; up to it their period is doubled.
+    InputError if the test makes no sense on this machine, RunError if the machine runs away; step
+    in s.
     """
     try:
         return KINDS[test.kind](machine, step, test, progress).as_quantity("receptance")
+    except NotDiedAwayError as error:
+        if 2.0 * test.period <= longest_period:
+            longer = replace(test, period=2.0 * test.period)
+            return frf_by_test(machine, step, longer, progress, longest_period)
+        raise InputError(f'test "{test.name}": {error} (period: {test.period:g} s)') from error
     except (ExcitationError, MeasurementError) as error:
         raise InputError(f'test "{test.name}": {error}') from error
 

@@ -57,6 +57,10 @@ def cut_at_pulses(
     ]
 
 
+class NotDiedAwayError(MeasurementError):
+    """A record that ends while the response still goes on."""
+
+
 def frf_of_transients(
     records: Sequence[HammerRecord],
     hold: Hold,
@@ -79,8 +83,8 @@ def frf_of_transients(
     told in `Frf.added_decay`, by which fitted damping is put right. `left_at_end` is the share of
     the peak of the (weighted) response that may be left at the end of the record.
 
-    MeasurementError if the records are not of one kind, a response has not died away, the added
-    decay is negative, or a line of the band holds no force.
+    MeasurementError if the records are not of one kind, the added decay is negative, or a line of
+    the band holds no force; NotDiedAwayError if a response has not died away.
     """
     require_one_kind(records)
     if not 0.0 <= added_decay < np.inf:
@@ -124,7 +128,7 @@ def _require_died_away(name: str, response: NDArray[np.float64], left_at_end: fl
     peak = np.abs(response).max()
     end = np.abs(response[-max(1, int(_END * response.size)) :]).max()
     if end > left_at_end * peak:
-        raise MeasurementError(
+        raise NotDiedAwayError(
             f"{name}: {end / peak:.2g} of the peak of the response is left at the end of the "
             f"record, more than {left_at_end:g}; record for longer, or add a decay"
         )

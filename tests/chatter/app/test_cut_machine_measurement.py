@@ -83,6 +83,44 @@ def test_mode_shapes_swing(workbench):
     ]
 
 
+def test_results_of_a_machine_stay_beside_one_another(workbench, tmp_path):
+    """FRFs were gone from the page once a move was made."""
+    view = workbench.machine
+    view.refresh()
+    for name in ("frf", "move"):
+        folder = view._folder(name)
+        folder.mkdir(parents=True)
+        (folder / "call.json").write_text(json.dumps({"title": f"heading {name}"}))
+        view._done(name)
+    headings = [one.object for one in view._results if "heading" in str(getattr(one, "object", ""))]
+    assert [text.count("heading move") for text in headings] == [1, 0]
+    assert "heading frf" in headings[1]
+
+
+def test_a_case_on_a_machine_leaves_no_path_of_this_computer(tmp_path):
+    """Notes and files of results held the whole path of the machine file."""
+    folder = tmp_path / "jobs"
+    shutil.copytree(EXAMPLES / "solid-crossbeam", folder / "crossbeam")
+    page = Workbench(folder)
+    try:
+        assert page.session.name == "crossbeam/case.toml"
+        page.sheet.choice.value = "check"
+        page.sheet.start()
+        assert page.sheet.work.computations.wait(PATIENCE)
+        results = page.session.results("check")
+        notes = json.loads((results / "call.json").read_text())["notes"]
+        assert any("dynamics of crossbeam/machine.toml" in note for note in notes)
+        for path in results.iterdir():
+            assert str(tmp_path).encode() not in path.read_bytes(), path.name
+        page.stability.refresh()
+        diagram = page.stability.diagram
+        assert diagram.computations.wait(PATIENCE)
+        assert "crossbeam/machine.toml" in diagram.message.object
+        assert str(tmp_path) not in diagram.message.object
+    finally:
+        page.end()
+
+
 def test_a_machine_without_a_move_says_so(workbench):
     view = workbench.machine
     view.refresh()

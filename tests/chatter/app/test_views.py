@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import openpyxl
@@ -107,6 +108,52 @@ def test_files_of_the_direction_before_do_not_go_into_the_next(tapped, tmp_path,
     assert view.computations.wait(PATIENCE)
     assert not view.direction.disabled
     assert [one.name for one in (tmp_path / "taps-tool-y").iterdir()] == [name]
+
+
+@pytest.mark.parametrize("when", ["between", "before"])
+def test_files_of_one_drop_stay_together_when_the_direction_is_changed_meanwhile(
+    tapped, taps, tmp_path, when
+):
+    """The second file went under the direction that was chosen after the first had come."""
+    view = tapped.tap_test
+    first, second, later = sorted(taps)[:3]
+    before = {one.name for one in (tmp_path / "taps-tool-x").iterdir()}
+    view.direction.value = "z"
+    with_parts(view.upload, "a.csv", taps[first], [1])
+    if when == "before":  # the first has not come whole
+        view.direction.value = "y"
+    with_parts(view.upload, "a.csv", taps[first], [2])
+    view.direction.value = "y"
+    assert not view.direction.disabled
+    with_parts(view.upload, "b.csv", taps[second], [1, 2])
+    assert view.computations.wait(PATIENCE)
+    folder = tmp_path / "taps-tool-z"
+    assert {one.name: one.read_bytes() for one in folder.iterdir()} == {
+        "a.csv": taps[first], "b.csv": taps[second]
+    }  # fmt: skip
+    assert not (tmp_path / "taps-tool-y").exists()
+    assert "b.csv: in taps-tool-z" in view.message.object
+    assert view.test is None  # nothing is fitted along y
+    # the next drop is of the direction that is chosen now, and takes no file of the one before
+    view.upload._last_part -= 10.0
+    with_parts(view.upload, "c.csv", taps[later], [1, 2])
+    assert view.computations.wait(PATIENCE)
+    assert [one.name for one in (tmp_path / "taps-tool-y").iterdir()] == ["c.csv"]
+    assert {one.name for one in (tmp_path / "taps-tool-x").iterdir()} == before
+
+
+def with_parts(widget, name, content, parts):
+    """Let parts of a file come, of two."""
+    half = len(content) // 2
+    for chunk in parts:
+        data = content[:half] if chunk == 1 else content[half:]
+        widget._process_event(
+            SimpleNamespace(
+                event_name="upload_event",
+                data={"name": name, "chunk": chunk, "total_chunks": 2, "data": data,
+                      "type": "text/csv"},
+            )
+        )  # fmt: skip
 
 
 def test_a_faulty_record_stays_out_where_records_come_one_after_the_other(tapped, taps):

@@ -211,6 +211,24 @@ def test_measured_frfs_are_found_from_the_folder_of_the_case(tmp_path, frf, expe
     assert found == [(tmp_path / name, *rest) for name, *rest in expected]
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("case.toml", "mill/machine.toml"),
+        ("jobs/one/case.toml", "jobs/one/mill/machine.toml"),
+        ("/home/somebody/jobs/case.toml", "mill/machine.toml"),
+    ],
+)
+def test_a_machine_is_called_by_a_name_that_a_reader_elsewhere_knows(tmp_path, name, told):
+    """Notes and reports held the whole path of the machine file."""
+    (tmp_path / "mill").mkdir()
+    block = 'mass = "10 kg", size = ["1 m", "1 m", "1 m"], centre = [0, 0, 0]'
+    text = f'title = "m"\nbody.bed = {{ {block} }}'
+    (tmp_path / "mill" / "machine.toml").write_text(text)
+    case = loads('[structure]\nmachine = "mill/machine.toml"', name, tmp_path)
+    assert case.machine_file().name == told
+
+
 def test_a_virtual_machine_is_found_from_the_folder_of_the_case(tmp_path):
     case = loads('[structure]\nmachine = "mill/machine.toml"', folder=tmp_path)
     assert case.structure.machine == tmp_path / "mill/machine.toml"

@@ -1,5 +1,6 @@
 """Mode shapes of a block on springs, whose frequencies and shapes are known."""
 
+import itertools
 import json
 import math
 
@@ -9,6 +10,7 @@ import pytest
 import chatter
 from chatter.description.machine.machine_file import MachineFile
 from tests.command_line import chatter_command
+from tests.places import EXAMPLES
 
 BLOCK = """
 title = "block on springs"
@@ -81,3 +83,36 @@ def test_the_command_gives_the_frequencies_and_writes_the_shapes(tmp_path):
     assert lowest == pytest.approx(math.sqrt(1e7 / 100.0) / (2.0 * math.pi), rel=1e-6)
     with np.load(tmp_path / "mode-shapes.npz", allow_pickle=False) as arrays:
         assert arrays["shapes"].shape == (1, 8, 3)
+
+
+def test_parts_of_matrices_are_drawn_by_their_points():
+    """Bodies floated in the air where the crossbeam between them was imported."""
+    file = chatter.load_machine(EXAMPLES / "machine-gantry" / "machine.toml")
+    shapes = chatter.mode_shapes(file, count=1)
+    section = file.imported["gantry"]
+    place = {
+        name: int(np.argmin(np.linalg.norm(shapes.points - np.array(one.at), axis=1)))
+        for name, one in section.point.items()
+    }
+    for name, one in section.point.items():
+        assert shapes.points[place[name]] == pytest.approx(one.at, abs=1e-9)
+    joined = {tuple(sorted(line)) for line in shapes.lines.tolist()}
+    for rail in section.rail:
+        for first, second in itertools.pairwise(rail):
+            assert tuple(sorted((place[first], place[second]))) in joined
+    # every point hangs together with the others
+    reached, waiting = set(), [place["rail_1"]]
+    while waiting:
+        now = waiting.pop()
+        reached.add(now)
+        waiting += [b if a == now else a for a, b in joined if now in (a, b)
+                    and (b if a == now else a) not in reached]  # fmt: skip
+    assert set(place.values()) <= reached
+
+
+def test_the_frequencies_are_a_table(shapes, tmp_path):
+    shapes.save(tmp_path)
+    rows = (tmp_path / "frequencies.csv").read_text().splitlines()
+    assert rows[0] == "mode,natural frequency [Hz]"
+    along_x = math.sqrt(1e7 / 100.0) / (2.0 * math.pi)
+    assert min(abs(float(row.split(",")[1]) - along_x) for row in rows[1:]) < 1e-3
