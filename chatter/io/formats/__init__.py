@@ -13,6 +13,7 @@ frf_columns     FRFs of the columns of a table
 npz             arrays by name, matrices                                     numpy, scipy.sparse
 lvm             channels of LabVIEW files in text                            LVM
 matlab          variables of MAT files                                       scipy, h5py
+matlab_size     bytes and arrays of a MAT file, counted before it is read    MAT 5
 xlsx            the table of a workbook                                      openpyxl
 parquet         columns of Parquet files                                     pyarrow
 named_arrays    arrays by name as columns of a table

@@ -86,8 +86,9 @@ def _decoded(path: Path, opened: Any, resampler: Callable[..., Any]) -> tuple[fl
                 f"{path}: holds more than {LARGEST_FILE / 2 / 1024**2:.0f} MB of samples when "
                 "decoded; cut it to the part that is wanted"
             )
-    rows = np.concatenate(parts, axis=1) if parts else np.empty((1, 0))
-    return rate, rows.astype(np.float64)
+    if not parts:
+        return rate, np.empty((1, 0))
+    return rate, np.concatenate(parts, axis=1, dtype=np.float64)
 
 
 def _frames(opened: Any) -> Any:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,13 +15,12 @@ from chatter.io.formats.frf_columns import frfs_of_tables
 from chatter.io.formats.matlab_hdf5 import variables_of_hdf5
 from chatter.io.formats.matlab_nodes import DEPTH, Node, require_count
 from chatter.io.formats.matlab_records import tables_of_variables
+from chatter.io.formats.matlab_size import require_unpacked_size
 from chatter.io.formats.named_arrays import require_size
 from chatter.io.formats.records import Tables, of_file, only_record
 from dynamics.frf.container import MeasurementError
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-#: type of a compressed data element of version 5, and bytes unpacked at a time
-_COMPRESSED, _BLOCK = 15, 2**20
 
 
 def read_records(path: Path) -> Tables:
@@ -43,7 +40,7 @@ def _of_version_5(path: Path) -> dict[str, Node]:
     try:
         shapes = [shape for _, shape, _ in scipy.io.whosmat(path)]
         require_size(path, 8.0 * sum(float(np.prod(shape, dtype=float)) for shape in shapes))
-        _require_unpacked_size(path)
+        require_unpacked_size(path)
         content = scipy.io.loadmat(path)
     except MeasurementError:
         raise
@@ -78,28 +75,6 @@ def _fields(path: Path, element: Any, names: Sequence[str], depth: int) -> dict[
     """Fields of a structure that hold numbers, text or structures."""
     nodes = {name: _node(path, name, element[name], depth + 1) for name in names}
     return {name: one for name, one in nodes.items() if one is not None}
-
-
-def _require_unpacked_size(path: Path) -> None:
-    """Unpack the compressed variables of version 5, block by block, as far as is allowed.
-
-    Shapes alone do not bound them: those of a structure say nothing about its fields. Source:
-    MathWorks, MAT-File Format, data element of type miCOMPRESSED.
-    """
-    content = read_content(path)
-    order = {b"IM": "<", b"MI": ">"}.get(content[126:128])
-    unpacked, position = 0, 128
-    while order is not None and position + 8 <= len(content):
-        kind, size = struct.unpack_from(f"{order}II", content, position)
-        packed = content[position + 8 : position + 8 + size]
-        position += 8 + size
-        if kind != _COMPRESSED:
-            continue
-        inflation = zlib.decompressobj()
-        while packed and not inflation.eof:
-            unpacked += len(inflation.decompress(packed, _BLOCK))
-            require_size(path, float(unpacked))
-            packed = inflation.unconsumed_tail
 
 
 MATLAB = Format(

@@ -64,9 +64,11 @@ class _Reader:
             nodes = [self.node(self.file[one], depth + 1) for one in self._references(item)]
             return [one for one in nodes if one is not None] if depth <= DEPTH else None
         kind = item.attrs.get("MATLAB_class", b"")
+        if not _is_plain(item.dtype):
+            return None
         self._count(item)
         if bytes(kind) == b"char":
-            return _text(item[()])
+            return _text(item[()]) if item.size <= _LONGEST_TEXT else None
         is_number = kind in (b"", b"double", b"single") or bytes(kind).startswith((b"int", b"uint"))
         return _numbers(item[()]) if is_number else None
 
@@ -105,13 +107,20 @@ class _Reader:
         return [one for one in np.asarray(dataset[()]).ravel() if one]
 
     def _count(self, dataset: Any) -> None:
-        self.read += 8.0 * float(dataset.size)
+        self.read += float(max(dataset.dtype.itemsize, 8)) * float(dataset.size)
         require_size(self.path, self.read)
 
 
+def _is_plain(dtype: np.dtype) -> bool:
+    """Whether elements are single numbers, real or complex; others may be of any size."""
+    if dtype.names == ("real", "imag"):
+        return all(dtype[name].kind in "fiu" for name in dtype.names)
+    return dtype.kind in "fiu"
+
+
 def _text(codes: np.ndarray) -> str | None:
-    """Text of the codes of its characters; None of what is too long for a unit."""
-    if codes.size > _LONGEST_TEXT or codes.dtype.kind not in "ui":
+    """Text of the codes of its characters."""
+    if codes.dtype.kind not in "ui":
         return None
     return "".join(chr(int(one)) for one in codes.ravel())
 

@@ -9,6 +9,9 @@ from chatter.io.files import LARGEST_FILE
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
 
+#: content that always has room, bytes, and how many times its file anything larger may be: noise
+#: that was measured packs ten times at most, beside channels that nothing was connected to
+_NEVER_A_BOMB, _MOST_TIMES = 64 * 1024**2, 100
 #: most columns that one array is taken for
 _MOST_COLUMNS = 256
 #: ends of names without brackets, as in "force_N" -> unit
@@ -24,11 +27,21 @@ _STEPS = ("dt", "ts", "timestep", "samplingtime")
 
 
 def require_size(path: Path, size: float) -> None:
-    """Raise MeasurementError where the content, in bytes, is larger than what is read."""
+    """Raise MeasurementError where the content, in bytes, is larger than what is read.
+
+    What unpacks to far more than any record does is refused, too: it was made to fill memory.
+    """
     if size > LARGEST_FILE:
         raise MeasurementError(
             f"{path}: its content unpacks to {size / 1024**2:.0f} MB; at most "
             f"{LARGEST_FILE / 1024**2:.0f} MB are read"
+        )
+    times = size / max(path.stat().st_size, 1)
+    if size > _NEVER_A_BOMB and times > _MOST_TIMES:
+        raise MeasurementError(
+            f"{path}: its content unpacks to {size / 1024**2:.0f} MB, {times:.0f} times its size; "
+            f"no record does, and at most {_MOST_TIMES} times are read beyond "
+            f"{_NEVER_A_BOMB / 1024**2:.0f} MB"
         )
 
 

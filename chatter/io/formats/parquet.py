@@ -26,9 +26,9 @@ def read_columns(path: Path) -> Table:
         ) from error
     try:
         with parquet.ParquetFile(path) as file:
-            size = file.metadata.num_rows * file.metadata.num_columns
-            require_size(path, 8.0 * size)
-            table = file.read()
+            names = _names_of_numbers(path, file.schema_arrow)
+            require_size(path, 8.0 * file.metadata.num_rows * len(names))
+            table = file.read(columns=names)
             arrays = {}
             for field, column in zip(table.schema, table.columns, strict=True):
                 arrays[_heading(field)] = np.asarray(column.to_numpy())
@@ -37,6 +37,23 @@ def read_columns(path: Path) -> Table:
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no Parquet file that can be read: {error}") from error
     return table_of_arrays(path, arrays)
+
+
+def _names_of_numbers(path: Path, schema: Any) -> list[str]:
+    """Columns that are read; texts and lists are not, as few bytes may repeat a long one."""
+    names = [one.name for one in schema if _is_of_numbers(one.type)]
+    if not names:
+        held = ", ".join(schema.names) or "nothing"
+        raise MeasurementError(f"{path}: holds no column of numbers; there is {held}")
+    return names
+
+
+def _is_of_numbers(kind: Any) -> bool:
+    """Whether a column holds numbers or instants."""
+    from pyarrow import types
+
+    instants = types.is_timestamp(kind) or types.is_date(kind) or types.is_duration(kind)
+    return bool(types.is_floating(kind) or types.is_integer(kind) or instants)
 
 
 def _heading(field: Any) -> str:

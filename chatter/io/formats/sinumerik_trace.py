@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
+from xml.parsers import expat
 
 import numpy as np
 
@@ -46,11 +48,17 @@ def read_trace(path: Path) -> Table:
 
 def _frame(path: Path) -> ElementTree.Element:
     raw = read_content(path)
-    if b"<!DOCTYPE" in raw or b"<!ENTITY" in raw:
+
+    def refuse(*_: Any) -> None:
         raise MeasurementError(f"{path}: declares entities, which no trace does; it is not read")
+
+    # in whatever encoding: the parser that meets a declaration sees it decoded
+    scan = expat.ParserCreate()
+    scan.StartDoctypeDeclHandler = refuse
     try:
+        scan.Parse(raw, True)
         root = ElementTree.fromstring(raw)
-    except ElementTree.ParseError as error:
+    except (ElementTree.ParseError, expat.ExpatError) as error:
         raise MeasurementError(f"{path}: is no whole XML file ({error})") from None
     frames = root.findall("./traceData/dataFrame")
     if len(frames) != 1:

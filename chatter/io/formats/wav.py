@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.io.files import read_content
 from chatter.io.formats.format import Format
+from chatter.io.formats.named_arrays import require_size
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
 
@@ -29,6 +30,7 @@ def read_sound(path: Path) -> Table:
         raise MeasurementError(f"{path}: is no WAV file that can be read: {error}") from error
     if rate <= 0 or values.size == 0:
         raise MeasurementError(f"{path}: the WAV file holds no samples")
+    require_size(path, 8.0 * values.size)
     values = full_scale(values.reshape(len(values), -1))
     columns = [Column("time [s]", np.arange(len(values)) / rate)]
     columns += [Column(f"sound {k + 1}", values[:, k]) for k in range(values.shape[1])]

@@ -15,6 +15,8 @@ from dynamics.frf.container import MeasurementError
 
 #: multiple of the rows of numbers of any other sheet from which a sheet is that of the record
 _FAR_MORE = 10
+#: what rows and cells take, bytes, and the longest text of a cell that Excel has
+_BYTES_OF_ROW, _BYTES_OF_CELL, _LONGEST_TEXT = 128, 8, 32_767
 
 
 def read_sheets(path: Path) -> Tables:
@@ -36,7 +38,8 @@ def read_sheets(path: Path) -> Tables:
             require_size(path, float(sum(one.file_size for one in archive.infolist())))
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         try:
-            sheets = {sheet.title: _lines(sheet) for sheet in book.worksheets}
+            size = _Size(path)
+            sheets = {sheet.title: _lines(sheet, size) for sheet in book.worksheets}
         finally:
             book.close()
     except MeasurementError:
@@ -77,9 +80,25 @@ def _sheets_of_records(path: Path, sheets: Mapping[str, Sequence[str]]) -> list[
     return [longest] if counts[longest] >= _FAR_MORE * others else filled
 
 
-def _lines(sheet: Any) -> list[str]:
+class _Size:
+    """Bytes of the rows read so far: one cell in a far corner makes rows and columns up to it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._bytes = path, 0
+
+    def add(self, row: Sequence[str]) -> Sequence[str]:
+        """The row, counted."""
+        self._bytes += _BYTES_OF_ROW + _BYTES_OF_CELL * len(row) + sum(map(len, row))
+        require_size(self._path, float(self._bytes))
+        return row
+
+
+def _lines(sheet: Any, size: _Size) -> list[str]:
     """Rows as lines of cells between tabs, blank ones to the left and right of all left out."""
-    rows = [[_text(cell) for cell in row] for row in sheet.iter_rows(values_only=True)]
+    # rows are as long as they are, not as wide as the sheet says of itself
+    sheet.reset_dimensions()
+    cells = sheet.iter_rows(values_only=True)
+    rows = [size.add([_text(cell) for cell in row]) for row in cells]
     first = min((k for row in rows for k, cell in enumerate(row) if cell), default=0)
     return ["\t".join(row[first:]).rstrip("\t") for row in rows]
 
@@ -87,7 +106,7 @@ def _lines(sheet: Any) -> list[str]:
 def _text(cell: object) -> str:
     if isinstance(cell, float):
         return repr(cell)
-    return "" if cell is None else " ".join(str(cell).split())
+    return "" if cell is None else " ".join(str(cell)[:_LONGEST_TEXT].split())
 
 
 def _rows_of_numbers(lines: Sequence[str]) -> int:
