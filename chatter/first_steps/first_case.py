@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -45,6 +46,16 @@ QUESTIONS = {
         "files, or three quantities of one mode, taken alike in x and y",
     ),
 }
+
+
+#: "4", "4 flutes", "z4", "Z = 4"
+_TEETH = re.compile(r"(?:z\s*=?\s*)?(\d+)(?:\s*(?:teeth|tooth|flutes?|inserts?|edges?))?", re.I)
+#: what may stand before a diameter
+_DIAMETER_SIGN = re.compile(r"^(?:[Øø⌀]|D(?:ia(?:meter|\.)?)?(?![a-z]))\s*=?\s*", re.I)
+#: "slot", "up, 9 mm", "down-milling 2,5 mm"
+_ENGAGEMENT = re.compile(r"\s*([a-z]+)(?:[\s-]*milling\b)?[\s,;]*(.*?)\s*", re.I)
+#: words of the shop, "climb milling, 6 mm"
+_MODES = {"slotting": "slot", "climb": "down", "conventional": "up"}
 
 
 def first_case(answers: dict[str, str], folder: str | Path = ".") -> str:
@@ -104,7 +115,9 @@ def check_answer(name: str, answer: str) -> None:
 
 
 def _parts(name: str, answer: str, counts: Sequence[int]) -> list[str]:
-    parts = [part.strip() for part in answer.split(",") if part.strip()]
+    # between semicolons a comma is that of a number
+    split = answer.replace(",", ".").split(";") if ";" in answer else answer.split(",")
+    parts = [part.strip() for part in split if part.strip()]
     if len(parts) not in counts:
         question = QUESTIONS[name]
         raise InputError(
@@ -123,9 +136,12 @@ def _table(**values: object) -> tomlkit.items.Table:
 
 def _tool(answer: str) -> tomlkit.items.Table:
     diameter, teeth = _parts("tool", answer, (2,))
-    if not teeth.isdigit():
+    if _TEETH.fullmatch(diameter):
+        diameter, teeth = teeth, diameter
+    counted = _TEETH.fullmatch(teeth)
+    if counted is None:
         raise InputError(f'tool: "{teeth}" is no number of teeth, such as "12 mm, 4"')
-    return _table(kind="end mill", teeth=int(teeth), diameter=diameter)
+    return _table(kind="end mill", teeth=int(counted[1]), diameter=_DIAMETER_SIGN.sub("", diameter))
 
 
 def _material(answer: str) -> tomlkit.items.Table:
@@ -138,11 +154,12 @@ def _material(answer: str) -> tomlkit.items.Table:
 
 
 def _engagement(answer: str) -> dict[str, str]:
-    parts = _parts("engagement", answer, (1, 2))
-    mode = parts[0].lower()
-    if (mode == "slot") != (len(parts) == 1) or mode not in ("slot", "up", "down"):
-        _parts("engagement", f"{answer} ", ())
-    return {"mode": mode} if mode == "slot" else {"mode": mode, "radial_depth": parts[1]}
+    found = _ENGAGEMENT.fullmatch(answer)
+    word, depth = ("", "") if found is None else found.groups()
+    mode = _MODES.get(word.lower(), word.lower())
+    if (mode == "slot") != (not depth) or mode not in ("slot", "up", "down"):
+        _parts("engagement", answer, ())
+    return {"mode": mode, **({"radial_depth": depth.replace(",", ".")} if depth else {})}
 
 
 def _cut(answer: str, engagement: str) -> tomlkit.items.Table:

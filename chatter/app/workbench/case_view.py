@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import panel as pn
@@ -13,6 +14,7 @@ import chatter
 from chatter.app.workbench.form_fields import (
     FormField,
     fields_of,
+    label_in_list,
     new_entries,
     sections,
     typed,
@@ -83,6 +85,10 @@ class CaseView:
                 pn.Column(self.message, self.text, self.call),
             ),
         )
+
+    def refresh(self) -> None:
+        """Look again at what has come into the folder."""
+        self.new.refresh()
 
     def follow(self) -> None:
         """Show the open case: in the form as far as its text is TOML, and as text."""
@@ -205,7 +211,7 @@ class CaseView:
 
     def _row(self, field: FormField) -> pn.Column:
         """Field with its error beside it."""
-        label = field.path if "[" in field.path else field.label
+        label = label_in_list(field.path) if "[" in field.path else field.label
         options: dict[str, Any] = {"label": label, "width": 240}
         if field.description:
             options["description"] = field.description
@@ -246,9 +252,11 @@ class NewCase:
         self.name = pn.widgets.TextInput(label="File", value="case.toml", width=200)
         self.make = pn.widgets.Button(label="Make the case", color="primary", align="end")
         self.message = wrapped_text(width=860, styles=_ERROR)
+        self.measured = wrapped_text()
+        self.refresh()
         self._card = pn.Card(
             pn.FlexBox(*self.answers.values(), min_width=860),
-            pn.pane.Str("Dynamics left empty: the modes of the tap tests (modes-x.toml ...)."),
+            self.measured,
             pn.Row(self.name, self.make),
             self.message,
             title="New case", collapsed=bool(session.case_names()), width=920,
@@ -258,6 +266,15 @@ class NewCase:
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the form for the page."""
         return self._card
+
+    def refresh(self) -> None:
+        """Say which tap tests a case without an answer on its dynamics takes up."""
+        names = ", ".join(path.name for path in self._mode_files())
+        self.measured.object = (
+            f"Dynamics left empty: the modes of {names}, as Tap test has written them."
+            if names
+            else "Dynamics: modes from Tap test are taken up here once there are any."
+        )
 
     def create(self) -> None:
         """Make the case of the answers, save it and open it."""
@@ -286,9 +303,12 @@ class NewCase:
             draft.set_modes(measured)
         draft.save()
 
+    def _mode_files(self) -> list[Path]:
+        return sorted(self._session.root.glob("modes-*.toml"))
+
     def _measured_modes(self) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] = []
-        for path in sorted(self._session.root.glob("modes-*.toml")):
+        for path in self._mode_files():
             content = tomlkit.parse(path.read_text(encoding="utf-8")).unwrap()
             found += content.get("structure", {}).get("mode", [])
         return found
@@ -299,7 +319,19 @@ def _answer(name: str, question: Question) -> pn.widgets.Widget:
     given = {"label": question.text, "placeholder": question.example, "width": 420}
     if name != "material":
         return pn.widgets.TextInput(**given)
-    return pn.widgets.AutocompleteInput(
+    field = pn.widgets.AutocompleteInput(
         options=list(MATERIALS), restrict=False, min_characters=0,
         case_sensitive=False, search_strategy="includes", stylesheets=[_BOUNDED_LIST], **given,
     )  # fmt: skip
+    field.param.watch(lambda _: _keep_what_was_typed(field), "value")
+    return field
+
+
+def _keep_what_was_typed(field: pn.widgets.AutocompleteInput) -> None:
+    """Put back a text that is in no entry: as the field is left, it takes its first one.
+
+    The list in the page is not brought up to date by a text that is pasted.
+    """
+    typed = (field.value_input or "").strip()
+    if typed and typed.lower() not in (field.value or "").lower():
+        field.value = typed

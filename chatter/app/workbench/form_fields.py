@@ -64,6 +64,14 @@ def written(content: Mapping[str, Any], path: str) -> str:
     return value if isinstance(value, str) else tomlkit.item(value).as_string()
 
 
+def label_in_list(path: str) -> str:
+    """Label of a value in a list of tables, "structure.mode[0].damping": "mode 1: damping"."""
+    table, _, rest = path.rpartition("].")
+    name, _, place = table.rpartition("[")
+    number = int(place) + 1
+    return f"{name.rpartition('.')[2]} {number}: {rest.replace('.', ', ')}".replace("_", " ")
+
+
 def typed(field: FormField, text: str) -> Any:
     """Value that a text in a field stands for; None where it is empty."""
     if not text.strip():

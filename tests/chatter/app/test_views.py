@@ -110,6 +110,40 @@ def test_files_of_the_direction_before_do_not_go_into_the_next(tapped, tmp_path,
     assert [one.name for one in (tmp_path / "taps-tool-y").iterdir()] == [name]
 
 
+def test_modes_are_numbered_in_the_form_as_people_count(workbench):
+    """ "structure.mode[0].frequency" stood beside "spindle speed"."""
+    labels = {path: widget.label for path, widget in workbench.case.widgets.items()}
+    assert labels["structure.mode[0].frequency"] == "mode 1: frequency"
+    assert labels["structure.mode[1].speed_dependence.mass"] == "mode 2: speed dependence, mass"
+    assert labels["cut.spindle_speed"] == "spindle speed"
+
+
+def test_a_new_case_names_the_modes_that_it_takes_up(tapped):
+    tapped.case.refresh()
+    assert "once there are any" in tapped.case.new.measured.object
+    tapped.tap_test.put_into_case()
+    assert "the modes of modes-x.toml," in tapped.case.new.measured.object
+
+
+@pytest.mark.parametrize(
+    ("typed", "left_with", "answer"),
+    [
+        ("Steel 42CrMo4", "Al6061-T6", "Steel 42CrMo4"),  # pasted, the list still whole
+        ("7075", "Al7075-T6", "Al7075-T6"),  # an entry that was looked for
+        ("", "Al7075-T6", "Al7075-T6"),  # clicked without a word
+    ],
+)
+def test_a_material_that_was_pasted_is_not_the_first_of_the_table(
+    tmp_path, typed, left_with, answer
+):
+    page = Workbench(tmp_path)
+    field = page.case.new.answers["material"]
+    field.value_input = typed
+    field.value = left_with
+    assert field.value == answer
+    page.end()
+
+
 @pytest.mark.parametrize("when", ["between", "before"])
 def test_files_of_one_drop_stay_together_when_the_direction_is_changed_meanwhile(
     tapped, taps, tmp_path, when

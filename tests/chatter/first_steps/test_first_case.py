@@ -39,6 +39,38 @@ def test_two_coefficients_a_slot_and_per_cent():
 
 
 @pytest.mark.parametrize(
+    "answer",
+    ["12.5 mm, 3", "12.5 mm, 3 flutes", "3 teeth, Ø12.5 mm", "D12,5 mm; z=3", "dia. 12.5 mm, Z 3",
+     "D = 12.5 mm, 3 inserts"],
+)  # fmt: skip
+def test_a_tool_is_told_as_a_shop_does(answer):
+    """ "3 flutes" was refused as no number of teeth."""
+    tool = loads(first_case({**EXAMPLES, "tool": answer})).tool
+    assert (tool.teeth, tool.diameter) == (3, pytest.approx(12.5e-3))
+
+
+@pytest.mark.parametrize(
+    ("answer", "mode", "depth"),
+    [
+        ("up 2.5 mm", "up", 2.5e-3),
+        ("climb milling, 2.5 mm", "down", 2.5e-3),
+        ("Conventional; 2,5 mm", "up", 2.5e-3),
+        ("down-milling 2,5 mm", "down", 2.5e-3),
+        ("slotting", "slot", 12e-3),
+    ],
+)
+def test_an_engagement_is_told_as_a_shop_does(answer, mode, depth):
+    cut = loads(first_case({**EXAMPLES, "engagement": answer})).cut
+    assert cut.mode == mode
+    assert (cut.radial_depth or 12e-3) == pytest.approx(depth)
+
+
+def test_between_semicolons_a_comma_is_that_of_a_number():
+    cut = loads(first_case({**EXAMPLES, "cut": "4200 rpm; 0,08 mm; 1,5 mm"})).cut
+    assert (cut.feed_per_tooth, cut.axial_depth) == (pytest.approx(8e-5), pytest.approx(1.5e-3))
+
+
+@pytest.mark.parametrize(
     ("name", "answer", "said"),
     [
         ("tool", "12 mm", "a number of teeth"),
@@ -46,6 +78,8 @@ def test_two_coefficients_a_slot_and_per_cent():
         ("cut", "8000 rpm", "a speed, a feed and a depth"),
         ("cut", "8000, 0.05 mm, 1 mm", "rpm"),
         ("engagement", "sideways", 'slot, or "up" or "down"'),
+        ("engagement", "slot, 3 mm", 'slot, or "up" or "down"'),
+        ("engagement", "", 'slot, or "up" or "down"'),
         ("engagement", "down", 'slot, or "up" or "down"'),
         ("material", "unobtainium", "not in the table"),
         ("dynamics", "900 Hz, 0.03", "three quantities"),
