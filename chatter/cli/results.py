@@ -50,6 +50,22 @@ def present(
     print_result(result, json=json, words=words)
     print_notes(notes)
     print_written(written)
+    if not any(path.suffix.lower() == ".png" for path in written):
+        _draw_into_report(result)
+
+
+def _draw_into_report(result: Saved) -> None:
+    """Draw a result whose files are no pictures into the report, if there is to be one."""
+    report = document()
+    drawn = getattr(result, "plot", None)
+    if report is None or drawn is None:
+        return
+    from chatter.plots.style import png_of
+    from chatter.report.document import Picture
+
+    pages = drawn()
+    for number, page in enumerate(pages if isinstance(pages, (list, tuple)) else [pages], start=1):
+        report.pictures.append(Picture(f"page {number}", png_of(page)))
 
 
 def print_result(result: Result, *, json: bool, words: Callable[[Result], None]) -> None:

@@ -71,13 +71,16 @@ def _call(there: Connection, function: Callable[..., Any], arguments: tuple[Any,
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the page ends it
 
     one_at_a_time = threading.Lock()
+    done = 0.0
 
     def report(stage: str, share: float) -> None:
+        nonlocal done
         with one_at_a_time:
+            done = share
             there.send(("progress", (stage, share)))
 
     try:
-        with reported_while_compiling(lambda text: report(text, 0.0)):
+        with reported_while_compiling(lambda text: report(text, done)):
             found = function(*arguments, report)
         there.send(("done", found))
     except InputError as error:

@@ -86,6 +86,15 @@ def test_page_stands_alone(name, folder):
     assert not re.search(r"0\.000\d+ m\b", page.text)
 
 
+def test_a_result_whose_files_are_no_pictures_is_drawn(folder):
+    """The operator's sheet writes PDF and XLSX: its report had no picture."""
+    shown = chatter_command("sheet", "case.toml", "--report", "page.html")
+    assert shown.exit_code == 0, shown.output
+    pictures = [found for tag, found in page_of(folder / "page.html").tags if tag == "img"]
+    assert len(pictures) == 1
+    assert pictures[0]["src"].startswith("data:image/png;base64,")
+
+
 def test_the_case_is_there_with_units_and_its_file_with_its_hash(folder):
     chatter_command("check", "case.toml", "--set", "cut.axial_depth=0.31 mm", "--report", "p.html")
     text = page_of(folder / "p.html").text
