@@ -96,5 +96,8 @@ def design_matrix(
 
 def as_real(columns: NDArray[np.complex128], noise: NDArray[np.float64]) -> NDArray[np.float64]:
     """Weighted real equations: real parts above imaginary parts, each over the noise."""
-    weighted = columns / (noise[:, None] if columns.ndim == 2 else noise)
-    return np.concatenate([weighted.real, weighted.imag], axis=0)
+    over = noise[:, None] if columns.ndim == 2 else noise
+    found = np.empty((2 * columns.shape[0], *columns.shape[1:]))
+    np.divide(columns.real, over, out=found[: noise.size])
+    np.divide(columns.imag, over, out=found[noise.size :])
+    return found

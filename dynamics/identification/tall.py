@@ -8,8 +8,13 @@ times the work; blocks of a few hundred rows stay on one thread.
 import numpy as np
 from numpy.typing import NDArray
 
-#: rows of a block of a product, of a block that is factorised
-ROWS, FACTORISED_ROWS = 32, 256
+#: rows of a block of a product at the least and most, of a block that is factorised
+ROWS, MOST_ROWS, FACTORISED_ROWS = 32, 1024, 256
+#: multiplications that OpenBLAS does on one thread: half of its threshold
+_PRODUCTS_ON_ONE_THREAD = 1 << 17
+#: part of a unit column that is new, below which normal equations lose more than a step of
+#: correction gives back
+_LEAST_NEW = 1e-4
 
 
 def padded(matrix: NDArray, rows: int = ROWS) -> NDArray:
@@ -30,8 +35,17 @@ def gram(left: NDArray, right: NDArray) -> NDArray:
 
     (n, k) and (n, j) make (k, j).
     """
-    a, b = blocks(padded(left)), blocks(padded(right))
-    return np.sum(a.conj().transpose(0, 2, 1) @ b, axis=0)
+    rows = _rows_of_product(left.shape[1], right.shape[1])
+    whole = left.shape[0] - left.shape[0] % rows
+    a, b = blocks(left[:whole], rows), blocks(right[:whole], rows)
+    rest = left[whole:].conj().T @ right[whole:]
+    return rest + np.sum(a.conj().transpose(0, 2, 1) @ b, axis=0)
+
+
+def _rows_of_product(columns: int, others: int) -> int:
+    """Rows of a block whose product a library makes on one thread."""
+    fitting = _PRODUCTS_ON_ONE_THREAD // max(1, columns * others)
+    return min(max(ROWS, 1 << max(0, fitting.bit_length() - 1)), MOST_ROWS)
 
 
 def product(left: NDArray, right: NDArray) -> NDArray:
@@ -39,8 +53,24 @@ def product(left: NDArray, right: NDArray) -> NDArray:
 
     (n, k) and (k, j) make (n, j).
     """
-    whole = blocks(padded(left)) @ right
-    return whole.reshape(whole.shape[0] * ROWS, right.shape[1])[: left.shape[0]]
+    rows = _rows_of_product(left.shape[1], right.shape[1])
+    whole = left.shape[0] - left.shape[0] % rows
+    found = np.empty((left.shape[0], right.shape[1]), dtype=np.result_type(left, right))
+    found[:whole] = (blocks(left[:whole], rows) @ right).reshape(whole, right.shape[1])
+    found[whole:] = left[whole:] @ right
+    return found
+
+
+def triangle_of(normal: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Cholesky factor (k, k), lower, of the products of scaled columns; None where it is not sound.
+
+    With unit columns a small entry of its diagonal is what a column adds to those before it.
+    """
+    try:
+        lower = np.linalg.cholesky(normal)
+    except np.linalg.LinAlgError:
+        return None
+    return lower if float(np.min(np.diag(lower), initial=1.0)) > _LEAST_NEW else None
 
 
 def factorise(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -136,3 +136,37 @@ def test_blockwise_algebra_is_that_of_the_whole(shape):
     assert np.tril(triangle, -1) == pytest.approx(np.zeros((shape[1], shape[1])), abs=1e-14)
     assert gram(matrix, other) == pytest.approx(matrix.T @ other)
     assert product(other, triangle[:3]) == pytest.approx(other @ triangle[:3])
+
+
+@pytest.mark.parametrize("apart", [0.3, 1e-3, 1e-7])
+def test_residues_are_those_of_plain_least_squares(apart):
+    """Two poles ever nearer to one another: normal equations must give way before they fail."""
+    w = 2.0 * np.pi * np.array([300.0, 300.0 * (1.0 + apart)])
+    damping = np.array([0.02, 0.02])
+    s = 2j * np.pi * LINES
+    noise = 1.0 + 0.3 * np.sin(LINES)
+    rng = np.random.default_rng(3)
+    values = (rng.normal(size=LINES.size) + 1j * rng.normal(size=LINES.size))[:, None]
+    records = Records(LINES, values, noise[:, None], 0)
+    model = fit_residues(records, w, damping, ())
+    unit = 1.0 / (s[:, None] ** 2 + 2.0 * s[:, None] * damping * w + w**2)
+    columns = np.hstack([unit, unit * s[:, None] / w]) / noise[:, None]
+    scaled = np.vstack([columns.real, columns.imag])
+    size = np.linalg.norm(scaled, axis=0)
+    target = np.concatenate([(values[:, 0] / noise).real, (values[:, 0] / noise).imag])
+    basis, _ = np.linalg.qr(scaled / size)
+    left = target - basis @ (basis.T @ target)
+    assert model.chi_square == pytest.approx(left @ left, rel=1e-9)
+    # what the poles move lies across the columns of the residues
+    step = 1e-6
+    for place in range(2):
+        moved = w.copy()
+        moved[place] *= 1.0 + step
+        back = w.copy()
+        back[place] *= 1.0 - step
+        slope = (
+            fit_residues(records, moved, damping, ()).chi_square
+            - fit_residues(records, back, damping, ()).chi_square
+        ) / (4.0 * step)
+        assert model.gradient[place] == pytest.approx(slope, rel=1e-3, abs=1e-2)
+    assert np.all(np.linalg.eigvalsh(model.normal) > -1e-9 * np.max(np.abs(model.normal)))
