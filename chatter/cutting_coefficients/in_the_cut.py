@@ -30,15 +30,16 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     """Return the settled cut of a run that begins or ends in the air; else the run as it is.
 
     The offset is the mean force in the air; where there is air on both sides it drifts on a line.
-    InputError where a force is blank somewhere, or none varies.
+    InputError where a force is blank somewhere, or none varies, or the time does not rise.
     """
     names = list(force_channels(measurement, run))
     time = run.signals.get("time")
     if time is None or not names or time.size < 2:
         return RunInCut(run, is_zeroed=False)
+    where = measurement.folder / run.name
+    _require_clock(str(where), time)
     case = run.of(measurement.case)
     forces = np.array([run.signals[name] for name in names])
-    where = measurement.folder / run.name
     _require_forces(str(where), names, forces)
     turn = 2.0 * math.pi / case.cut.spindle_speed / run.step
     if time.size < FEWEST_REVOLUTIONS * turn:  # too short for a mean, where that is told
@@ -56,6 +57,17 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     for name in names:
         signals[name] = signals[name] - _offset(run.signals[name], air, turn, time, signals["time"])
     return RunInCut(replace(run, signals=signals), is_zeroed=bool(air))
+
+
+def _require_clock(where: str, time: Array) -> None:
+    """Raise InputError where a time is no number or does not rise."""
+    wrong = np.flatnonzero(~(np.diff(time) > 0.0))
+    if wrong.size:
+        first = int(wrong[0])
+        raise InputError(
+            f"{where}: time: {time[first]:.6g} s in row {first + 1} is followed by "
+            f"{time[first + 1]:.6g} s; times must rise"
+        )
 
 
 def _require_forces(where: str, names: list[str], forces: Array) -> None:

@@ -14,6 +14,8 @@ from chatter.description import renamed
 from chatter.description.case_checks import depth_problems, friction_problems, optimum_problems
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written
+from chatter.description.given_path import path_given
+from chatter.description.given_values import EXAMPLE_OF_PATCH, mapping_given, text_given
 from chatter.description.patchable import Description
 from chatter.description.path import Step, join_path
 from chatter.description.renamed import Renamed
@@ -229,7 +231,7 @@ class Case(Description):
 
         See `Description`.
         """
-        if not path.startswith(MACHINE_PATH):
+        if not text_given(path, f"{self.name}: a path").startswith(MACHINE_PATH):
             return super().get(path)
         inside = path.removeprefix(MACHINE_PATH)
         self.require_machine(inside)
@@ -248,7 +250,7 @@ class Case(Description):
 
         See `Description`.
         """
-        path = Path(path)
+        path = path_given(path, "the case to be written")
         if self._machine is None or self._machine == self._read_machine():
             super().save(path)
             return
@@ -280,6 +282,7 @@ class Case(Description):
         Paths that begin with "machine." lead into the machine. A cut that becomes a slot is as wide
         as the tool.
         """
+        mapping_given(values, f"{self.name}: a dictionary", EXAMPLE_OF_PATCH)
         into = [str(path) for path in values if str(path).startswith(MACHINE_PATH)]
         if into:
             own = {path: value for path, value in values.items() if path not in into}

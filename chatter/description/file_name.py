@@ -31,12 +31,19 @@ def in_case_folder(given: Any, info: ValidationInfo) -> Path:
         )
     context = info.context or {}
     folder = context.get("folder", Path())
-    if context.get("is_foreign") and not is_allowed(folder / given, folder):
-        raise ValueError(
-            f"{formatted(given)} lies outside the folder of this file; where that is meant, "
-            f"allow its folder: {VARIABLE}={(folder / given).parent.resolve()}"
-        )
+    if context.get("is_foreign") and (said := outside(folder, given)):
+        raise ValueError(said)
     return folder / given
+
+
+def outside(folder: Path, given: str | Path) -> str:
+    """What is said of a file that a description in a folder may not name; empty where it may."""
+    if is_allowed(folder / given, folder):
+        return ""
+    return (
+        f"{formatted(str(given))} lies outside the folder of this file; where that is meant, allow "
+        f"its folder: {VARIABLE}={(folder / given).parent.resolve()}"
+    )
 
 
 #: a file named relative to the folder of the case file

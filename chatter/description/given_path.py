@@ -13,7 +13,7 @@ from chatter.description.formatting import formatted
 
 def path_given(given: Any, what: str) -> Path:
     """Return a path; InputError where what is given is none, with what is required."""
-    if isinstance(given, (str, os.PathLike)):
+    if isinstance(given, (str, os.PathLike)) and "\0" not in str(given):
         return Path(given)
     raise InputError(f"the path of {what} is required; {formatted(given)} is given")
 

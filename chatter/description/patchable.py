@@ -16,6 +16,7 @@ from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
 from chatter.description.given_path import path_given
+from chatter.description.given_values import EXAMPLE_OF_PATCH, mapping_given, text_given
 from chatter.description.kinds_of_files import refuse_other_kind, with_article
 from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
@@ -163,7 +164,7 @@ class Description(Section):
             raise InputError(f"{name}: {error}") from None
         except RecursionError:
             raise InputError(f"{name}: is too deeply nested") from None
-        return cls._of_document(document, name, Path(folder))
+        return cls._of_document(document, name, path_given(folder, "the folder of its files"))
 
     @classmethod
     def from_file(cls, path: str | Path, name: str = "") -> Self:
@@ -212,10 +213,10 @@ class Description(Section):
         InputError
             If the text describes nothing; all problems found are in it.
         """
-        name = name or cls.NOUN
-        document = parse_document(text, name)
+        name = text_given(name, "a name for messages") or cls.NOUN
+        document = parse_document(text_given(text, f"{name}: a description"), name)
         refuse_bare_numbers(cls, document.unwrap(), name)
-        return cls._of_document(document, name, Path(folder))
+        return cls._of_document(document, name, path_given(folder, "the folder of its files"))
 
     @classmethod
     def _of_document(
@@ -262,7 +263,7 @@ class Description(Section):
         InputError
             If the path leads nowhere.
         """
-        return self._value_of(self, self._steps(path), 0)
+        return self._value_of(self, self._steps(text_given(path, f"{self.name}: a path")), 0)
 
     def _value_of(self, item: Any, steps: tuple[Step, ...], index: int) -> Any:
         if index == len(steps):
@@ -299,6 +300,7 @@ class Description(Section):
         InputError
             If a path is unknown or what comes of it is wrong; all problems found are in it.
         """
+        mapping_given(values, f"{self.name}: a dictionary", EXAMPLE_OF_PATCH)
         data = copied(self._plain())
         edits = []
         notes: list[str] = []
@@ -348,7 +350,7 @@ class Description(Section):
         InputError
             If the file cannot be written.
         """
-        path = Path(path)
+        path = path_given(path, f"the {self.NOUN} to be written")
         document = self._source()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -106,18 +106,18 @@ class Registry(Generic[Entry]):
         return len(self.entries)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.entries
+        return isinstance(name, str) and name in self.entries
 
     def __getitem__(self, name: str) -> Entry:
         """Return the entry of a name; raise InputError that lists what there is."""
-        if name not in self.entries:
+        if name not in self:
             raise InputError(self.unknown(name))
         return self.entries[name]
 
     def unknown(self, name: str) -> str:
         """Say that there is no entry of this name, and which there are."""
         known = ", ".join(formatted(entry) for entry in self.entries)
-        near = difflib.get_close_matches(name[:60].lower(), self.entries, n=1, cutoff=0.6)
+        near = difflib.get_close_matches(str(name)[:60].lower(), self.entries, n=1, cutoff=0.6)
         hint = (
             f"did you mean {formatted(near[0])}? There are {known}"
             if near

@@ -10,7 +10,9 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
 from chatter.description.given_path import paths_given
+from chatter.description.given_values import number_given
 from chatter.drive_friction.drive_records import DriveRecords, DriveSettings, drive_records
 from chatter.drive_friction.friction_laws import LAWS, FitSettings, FittedFriction
 from chatter.drive_friction.result import DriveFriction, TriedFriction
@@ -79,8 +81,8 @@ def friction(
     InputError
         If the records cannot be used, or determine no friction.
     """
-    if law is not None and law not in LAWS:
-        raise InputError(f'law "{law}" is none of {", ".join(LAWS)}')
+    if law is not None and not (isinstance(law, str) and law in LAWS):
+        raise InputError(f"law {formatted(law)} is none of {', '.join(LAWS)}")
     if isinstance(files, DriveRecords):
         given = files
     else:
@@ -108,6 +110,8 @@ def _reason(error: Exception, records: Sequence[DriveRecord]) -> str:
 def _settings(
     records: Sequence[DriveRecord], inertia: float | None, low_pass: float | None
 ) -> FitSettings:
+    inertia = None if inertia is None else number_given(inertia, "--inertia")
+    low_pass = None if low_pass is None else number_given(low_pass, "--low-pass")
     rate = min(1.0 / record.sample_time for record in records)
     cutoff = min(_HIGHEST_CUTOFF, _CUTOFF_SHARE * rate) if low_pass is None else low_pass
     if not 0.0 < cutoff < 0.5 * rate:

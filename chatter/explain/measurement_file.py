@@ -10,7 +10,7 @@ import tomlkit
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
-from chatter.description.file_name import is_file_name
+from chatter.description.file_name import is_file_name, outside
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.kind_list import KINDS, OF_PARTS, ON_MACHINE
@@ -261,6 +261,8 @@ def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
         raise InputError(f"{path}: {key} is missing; a file name is required")
     if not is_file_name(name):
         raise InputError(f"{path}: {key}: {formatted(name)} is not a file name")
+    if said := outside(path.parent, name):
+        raise InputError(f"{path}: {key}: {said}")
     return path.parent / name
 
 
@@ -270,7 +272,9 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
         raise InputError(f'{where}: file is missing; a run names its signals, such as "run01.csv"')
     if not is_file_name(entry["file"]):
         raise InputError(f"{where}: file: {formatted(entry.get('file'))} is not a file name")
-    file = _file(path, entry, "file")
+    if said := outside(path.parent, entry["file"]):
+        raise InputError(f"{where}: file: {said}")
+    file = path.parent / entry["file"]
     where = f"{where} ({file.name})"
     overrides = {
         _path_of(where, key, declared): value for key, value in entry.items() if key not in OWN_KEYS

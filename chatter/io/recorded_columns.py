@@ -10,6 +10,7 @@ import numpy as np
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.whole_files import write_whole
+from chatter.io.result_files import csv_of_rows
 
 #: what a run may write its columns as
 KINDS = ("csv", "parquet", "none")
@@ -18,7 +19,7 @@ _ROWS_AT_ONCE = 512
 
 def require_kind(kind: str) -> None:
     """Refuse what is none of `KINDS`, and Parquet where pyarrow is not installed; InputError."""
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise InputError(f"signals: {formatted(kind)} is not known; there are {', '.join(KINDS)}")
     if kind == "parquet":
         try:
@@ -48,7 +49,7 @@ def write_columns(
         table = pyarrow.table(dict(columns))
         return [write_whole(path, lambda file: pyarrow.parquet.write_table(table, file))]
     table = np.column_stack(list(columns.values()))
-    return [write_whole(path, ",".join(columns) + "\n" + _rows(table, forms))]
+    return [write_whole(path, csv_of_rows([list(columns)]) + _rows(table, forms))]
 
 
 def _rows(table: np.ndarray, forms: list[str]) -> str:

@@ -11,14 +11,15 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from chatter.description.given_path import path_given
 from chatter.description.whole_files import write_whole
 from chatter.io.presentation import presentation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: what a formula of a spreadsheet begins with
-_BEGIN_FORMULAS = ("=", "+", "-", "@", "|")
+#: what a formula of a spreadsheet begins with, as wide as other keyboards write it too
+_BEGIN_FORMULAS = tuple("=+-@|＝＋－＠")
 #: a number with or without unit, which is none, and a dash for nothing
 _QUANTITY = re.compile(r"[+-]?[0-9.]+([eE][+-]?[0-9]+)?( [\w/%*^°²³·]+)?|[+-](inf|nan)|-")
 
@@ -70,7 +71,7 @@ def write_results(
 
     Paths of what was written are returned.
     """
-    folder = Path(folder)
+    folder = path_given(folder, "a folder for what is written")
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         write_whole(folder / name, text)

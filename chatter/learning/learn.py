@@ -14,6 +14,7 @@ from chatter.description.case import Case, load
 from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.given_values import share_given, whole_number_given
 from chatter.description.units import rpm
 from chatter.explain.kinds.stability import Stability, likely_stable
 from chatter.explain.measurement import Measurement
@@ -281,7 +282,7 @@ def learn(
         If they cannot be kept.
     """
     declared = described_or_read(case, Case, load)
-    _check(aim, risk, particles)
+    _check(aim, risk, particles, seed)
     measurement = cuts if isinstance(cuts, Measurement) else read_cuts(cuts, declared)
     problem = problem_of(measurement, folder)
     prior = prior_of(problem)
@@ -296,13 +297,12 @@ def learn(
     return Learnt(declared, measurement, problem, before, after, last, first, aim, risk)
 
 
-def _check(aim: str, risk: float, particles: int) -> None:
-    if aim not in AIMS:
+def _check(aim: str, risk: float, particles: int, seed: int) -> None:
+    if not isinstance(aim, str) or aim not in AIMS:
         raise InputError(f"--aim {formatted(aim)} is none of {', '.join(AIMS)}")
-    if not 0.0 < risk <= 1.0:
-        raise InputError(f"--risk {risk:g}: a probability above 0 and up to 1 is required")
-    if not 32 <= particles <= 100_000:
-        raise InputError(f"--particles {particles}: a number from 32 to 100000 is required")
+    share_given(risk, "--risk")
+    whole_number_given(particles, "--particles", 32, 100_000)
+    whole_number_given(seed, "--seed", 0, 2**31)
 
 
 def problem_of(measurement: Measurement, folder: str | Path | None = None) -> Problem:

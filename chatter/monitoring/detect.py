@@ -10,6 +10,7 @@ from chatter.description.case import Case, load
 from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.given_path import path_given
+from chatter.description.given_values import whole_number_given
 from chatter.description.units import QuantityError, parse
 from chatter.detection.spectral.frame_evidence import evidence_of
 from chatter.detection.spectral.recording import Recording
@@ -76,11 +77,22 @@ def detect(
         rate = sampling_frequency(sampling_rate)
         recording = path_given(recording, "a recording")
         recording = read_recording(recording, channels, rate, columns)
+    _refuse_unseen(recording, given)
     evidence = evidence_of(recording, given, teeth)
     segments = tuple(judged(evidence))
     return DetectedChatter(
         recording, evidence, segments, given, case, _advice(segments, evidence.teeth, case)
     )
+
+
+def _refuse_unseen(recording: Recording, given: float | None) -> None:
+    """Refuse a speed of the spindle that the sampling of a recording cannot show."""
+    highest = 0.5 / recording.time_step
+    if given is not None and not given < highest:
+        raise InputError(
+            f"{recording.name}: {2.0 * highest:.4g} samples a second show nothing above "
+            f"{highest:.4g} Hz; the spindle turns at {given:.4g} Hz ({60.0 * given:.4g} rpm)"
+        )
 
 
 def _advice(segments: Sequence[Segment], teeth: int | None, case: Case | None) -> Advice | None:
@@ -138,6 +150,4 @@ def teeth_of(given: int | None, case: Case | None) -> int | None:
     """Number of teeth, as given or of the case; None where neither tells."""
     if given is None:
         return None if case is None or case.tool is None else case.tool.teeth
-    if not 1 <= given <= _MOST_TEETH:
-        raise InputError(f"--teeth is {given}; allowed are 1 to {_MOST_TEETH}")
-    return given
+    return whole_number_given(given, "--teeth", 1, _MOST_TEETH)

@@ -47,6 +47,8 @@ _SLOW = ("current", "power")
 _FEWEST_SAMPLES = 2
 #: relative scatter of the steps of time that counts as uniform
 _UNIFORM = 0.01
+#: samples of an even clock for each that was recorded: where there are more the recording has gaps
+_MOST_FILLED = 4.0
 
 
 class _Channel(NamedTuple):
@@ -104,6 +106,7 @@ def _recording(
             f"{path}: the time does not increase at {table.where(int(np.argmin(steps)) + 1)}"
         )
     if steps.size and steps.max() - steps.min() > _UNIFORM * step:
+        _refuse_gaps(path, table, steps, step)
         even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
         values = np.stack([np.interp(even, time, one) for one in values.T], axis=1)
         tacho = None if tacho is None else np.interp(even, time, tacho)
@@ -111,6 +114,16 @@ def _recording(
         step = float((time[-1] - time[0]) / max(time.size - 1, 1))
     names, quantities = zip(*((one.name, one.quantity) for one in chosen), strict=True)
     return Recording(str(path), step, names, quantities, values, float(time[0]), tacho)
+
+
+def _refuse_gaps(path: Path, table: Table, steps: Array, step: float) -> None:
+    """Refuse a recording that is mostly gaps: an even clock would fill them with lines."""
+    if steps.sum() > _MOST_FILLED * steps.size * step:
+        row = int(np.argmax(steps))
+        raise InputError(
+            f"{path}: the time jumps by {steps[row]:.3g} s at {table.where(row + 1)}, where the "
+            f"others are {step:.3g} s apart; a recording without such gaps is required"
+        )
 
 
 def _time(

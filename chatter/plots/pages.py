@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import textwrap
-import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import BytesIO
@@ -13,6 +12,8 @@ import matplotlib as mpl
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
 from PIL import Image
+
+from chatter.plots.style import any_letters
 
 #: inch
 _WIDTH, _HEIGHT, _MARGIN = 8.27, 11.69, 0.75
@@ -113,13 +114,14 @@ class Pages:
 @contextmanager
 def pages_of(file: BinaryIO, title: str) -> Iterator[Pages]:
     """Pages that are written to a file when all is on them."""
-    with mpl.rc_context({"pdf.fonttype": 42}), warnings.catch_warnings():
-        # a title in letters that the font lacks is no reason to fail
-        warnings.filterwarnings("ignore", message="Glyph .* missing from")
-        with PdfPages(file, metadata={"Title": _printable(title)}) as pdf:
-            pages = Pages(pdf)
-            yield pages
-            pages.break_page()
+    with (
+        mpl.rc_context({"pdf.fonttype": 42}),
+        any_letters(),
+        PdfPages(file, metadata={"Title": _printable(title)}) as pdf,
+    ):
+        pages = Pages(pdf)
+        yield pages
+        pages.break_page()
 
 
 def _column_widths(rows: Sequence[Sequence[str]]) -> list[int]:

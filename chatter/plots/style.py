@@ -1,6 +1,9 @@
 """One look for every picture: readable in print, distinguishable without colour vision."""
 
 import math
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BytesIO
 from os import PathLike
 from typing import IO, Any
@@ -36,10 +39,19 @@ def new_figure(width: float, height: float, **layout: Any) -> Figure:
     return figure
 
 
+@contextmanager
+def any_letters() -> Iterator[None]:
+    """A title in letters that the font lacks is no reason for a warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        yield
+
+
 def write_png(figure: Figure, file: str | PathLike | IO[bytes]) -> None:
     """Write a figure of `new_figure` as PNG; `savefig` would draw it twice."""
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
+    with any_letters():
+        canvas.draw()
     picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
     resolution = (figure.dpi, figure.dpi)
     picture.save(file, format="png", dpi=resolution, compress_level=_COMPRESSION)

@@ -3,6 +3,7 @@
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.given_values import text_given
 from chatter.description.registry import Registry
 from chatter.stability.methods.collocation.collocation_method import COLLOCATION
 from chatter.stability.methods.matrix_free.matrix_free_method import MATRIX_FREE
@@ -39,7 +40,7 @@ def chosen_method(case: Case, name: str | None = None) -> StabilityMethod:
 
     InputError if there is no such method.
     """
-    given = name
+    given = None if name is None else text_given(name, "the name of a method")
     name = given or (case.lobes.method if case.lobes else None) or AUTO
     if name == AUTO:
         name = "collocation" if case.contact is None else "matrix-free"

@@ -15,6 +15,7 @@ from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
+from chatter.description.given_values import text_given, values_given
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.simulation.perturbation.multiplier import periods_per_revolution
 from chatter.simulation.setup import set_up
@@ -142,10 +143,12 @@ def bifurcation(
     RunError
         If the study is interrupted; finished cuts are in the folder.
     """
+    path = text_given(path, "the path of what changes")
     if isinstance(values, str):
         axis = axis_of(f"{path}={values}", case, "values", DEFAULT_CUTS)
         values = [one.patch[axis.path] for one in axis.values]
-    if len(values) == 0:
+    values = values_given(values, f"{case.name}: {path}: values")
+    if not values:
         raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
     if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
         case = case.patch({"simulation.revolutions": _REVOLUTIONS})

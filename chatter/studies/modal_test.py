@@ -12,6 +12,7 @@ import numpy as np
 from chatter.compile.measured_frf import with_direction, with_magnitudes
 from chatter.description.errors import InputError
 from chatter.description.given_path import paths_given
+from chatter.description.given_values import whole_number_given
 from chatter.io.formats.format_list import read_frfs
 from chatter.io.hammer_records import (
     HammerFolder,
@@ -32,6 +33,9 @@ from dynamics.modal.modes import Side
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+#: most modes that one may ask for
+_MOST_MODES = 1000
 
 
 @dataclass(frozen=True, repr=False)
@@ -224,6 +228,10 @@ def modes(
         raise InputError(f'side "{side}" is not known; there are "tool" and "workpiece"')
     if direction is not None and direction not in ("x", "y", "z"):
         raise InputError(f'direction "{direction}" is not known; there are "x", "y" and "z"')
+    if not given:
+        raise InputError("a file of FRFs or of a hammer record is required; none is given")
+    if mode_count is not None:
+        whole_number_given(mode_count, "--mode-count", 1, _MOST_MODES)
     stated = columns if isinstance(columns, StatedRecord) else StatedRecord(columns)
     try:
         frfs, hammer, notes = _read(given, keep, stated)

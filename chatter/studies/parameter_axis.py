@@ -9,6 +9,7 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.given_values import text_given, values_given
 from chatter.description.path import info_at, parse_path
 from chatter.description.units import rpm, unit_factor
 from chatter.description.wording import unknown_key
@@ -55,9 +56,15 @@ def axis_of(
 
 def _read(given: AxisGiven, case: Case, option: str, count: int, most: int) -> Variation:
     if not isinstance(given, str):
-        path, values = given
+        pair = values_given(given, f"{option}: a path and its values")
+        if len(pair) != len(("path", "values")):
+            raise InputError(
+                f"{option}: a path and its values are required; {formatted(pair)} is given"
+            )
+        path = text_given(pair[0], f"{option}: the path")
+        values = values_given(pair[1], f"{option} {path}: values")
         _require_quantity(case, path, option)
-        return variation(path, list(values), case)
+        return variation(path, values, case)
     path, equals, span = given.partition("=")
     if not (equals and path.strip() and ".." in span):
         raise InputError(

@@ -8,6 +8,7 @@ from pydantic import Field, PrivateAttr
 
 from chatter.description import renamed
 from chatter.description.errors import InputError
+from chatter.description.given_values import mapping_given
 from chatter.description.kinds_of_files import OF_CASES_ALONE
 from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.beam import BeamSection
@@ -177,6 +178,7 @@ class MachineFile(Description):
         position is none, or it lies beyond the travel of the axis.
         """
         read = {}
+        mapping_given(given, f"{self.name}: positions: a dictionary", '{"X": "120 mm"}')
         for name, position in given.items():
             if name not in self.axis:
                 known = nearest(str(name), list(self.axis)) if self.axis else "there are none"

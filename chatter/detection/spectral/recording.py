@@ -23,8 +23,8 @@ SLOPES = {
     "power": 1.0,
     "unknown": 0.0,
 }
-#: samples that are of any use
-_FEWEST = 256
+#: samples that are of any use, samples a second that show vibration at all, and s in which it does
+_FEWEST, _SLOWEST, _SHORTEST = 256, 20.0, 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +71,20 @@ class Recording:
                 raise InputError(f"{self.name}: {channel}: sample {wrong[0] + 1} is not finite")
         if not (math.isfinite(self.time_step) and self.time_step > 0.0):
             raise InputError(f"{self.name}: the time does not increase")
+        self._require_clock_of_a_recording()
+
+    def _require_clock_of_a_recording(self) -> None:
+        """Refuse a clock that counts in another unit, or a rate that was mistyped."""
+        rate, unit = 1.0 / self.time_step, "is its time in another unit?"
+        if not rate >= _SLOWEST:
+            raise InputError(
+                f"{self.name}: {rate:.3g} samples a second, where {_SLOWEST:g} are needed; {unit}"
+            )
+        if not self.duration >= _SHORTEST:
+            raise InputError(
+                f"{self.name}: {self.duration:.3g} s at {rate:.3g} samples a second, where "
+                f"{_SHORTEST:g} s are needed; {unit}"
+            )
 
     @property
     def duration(self) -> float:

@@ -13,6 +13,7 @@ import scipy
 
 from chatter.compile.linearised_friction import closed_backlashes
 from chatter.description.errors import InputError
+from chatter.description.given_values import texts_given
 from chatter.description.machine.frequency_response import StateSection, parse_tested_point
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.machine_or_path import takes_machine_or_path
@@ -127,7 +128,10 @@ def export(
     file = machine
     assembled = in_state(file, state or StateSection())
     usual = _usual(file, [drive.axis for drive in assembled.drives])
-    names = (tuple(inputs) or usual, tuple(outputs) or usual)
+    names = (
+        texts_given(inputs, "places of inputs") or usual,
+        texts_given(outputs, "places of outputs") or usual,
+    )
     for name in (*names[0], *names[1]):
         try:
             parse_tested_point(name)

@@ -12,6 +12,7 @@ from chatter.compile.linearised_friction import closed_backlashes, linearised_fr
 from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
+from chatter.description.given_values import text_given, texts_given
 from chatter.description.machine.frequency_response import (
     TORQUE_KINDS,
     FrfSection,
@@ -103,11 +104,10 @@ def frf(
     RunError
         If the machine runs away in a test.
     """
-    if not file.frf and not names:
+    wanted = texts_given(names or (), "names of [frf.NAME]") or tuple(file.frf)
+    if not wanted:
         return frfs(file, default_frfs(file), progress)
-    return frfs(
-        file, {name: _named(file, "frf", file.frf, name) for name in names or file.frf}, progress
-    )
+    return frfs(file, {name: _named(file, "frf", file.frf, name) for name in wanted}, progress)
 
 
 @takes_machine_or_path
@@ -302,7 +302,7 @@ def _told_with(where: str, file: str) -> Iterator[None]:
 
 
 def _named(file: MachineFile, kind: str, sections: Mapping[str, Section], name: str) -> Section:
-    if name not in sections:
+    if text_given(name, f"the name of [{kind}.NAME]") not in sections:
         known = ", ".join(sections) or "none"
         raise InputError(f"{file.name}: there is no [{kind}.{name}]; there are {known}")
     return sections[name]

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.machine_parts import assembled_machine
+from chatter.description.given_values import whole_number_given
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.machine_or_path import takes_machine_or_path
 from chatter.io.presentation import presentation
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: modes below this are motions of the whole that nothing resists, Hz
 _RIGID = 0.5
+#: most modes that one may ask for
+_MOST_MODES = 10_000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,6 +95,7 @@ def mode_shapes(file: MachineFile, count: int = 12) -> ModeShapes:
     InputError
         If the machine cannot be assembled.
     """
+    count = whole_number_given(count, "count of modes", 1, _MOST_MODES)
     machine = assembled_machine(file)
     modes = undamped_modes(machine.structure)
     elastic = np.flatnonzero(modes.frequency > _RIGID)[:count]

@@ -6,7 +6,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
-from chatter.description.errors import InputError
+from chatter.description.given_values import whole_number_given
 from chatter.description.progress import no_progress
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
@@ -69,8 +69,7 @@ def check_counts(samples: int, speeds: int, seed: int) -> None:
     """Raise InputError for counts that give no result."""
     limits = (("--samples", samples, 2, 1_000_000), ("--speeds", speeds, 2, 20_000))
     for name, given, low, high in (*limits, ("--seed", seed, 0, 2**31)):
-        if not low <= given <= high:
-            raise InputError(f"{name} {given}: a number from {low} to {high} is required")
+        whole_number_given(given, name, low, high)
 
 
 def confidence_interval(successes: int, count: int) -> tuple[float, float]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
+from chatter.description.given_values import text_given, values_given
 from chatter.io.result_files import SavedResult, csv_of_rows
 from chatter.studies.model import fingerprint, model_or_read, patched
 from chatter.studies.result_cache import Execution, ResultCache
@@ -219,9 +220,13 @@ def _variations(
         return tuple(
             read_variation(f"{path}={values}", model, count)
             if isinstance(values, str)
-            else variation(path, list(values), model)
+            else variation(path, values_given(values, f"--vary {path}: values"), model)
             for path, values in vary.items()
         )
+    given = [vary] if isinstance(vary, str) else values_given(vary, "--vary: variations")
     return tuple(
-        one if isinstance(one, Variation) else read_variation(one, model, count) for one in vary
+        one
+        if isinstance(one, Variation)
+        else read_variation(text_given(one, "--vary: PATH=VALUES"), model, count)
+        for one in given
     )

@@ -191,3 +191,22 @@ def test_a_record_of_less_than_four_revolutions_is_refused_in_words(tmp_path, ca
     forces = forces_of(np.full(2000, 0.08))[:samples]
     with pytest.raises(InputError, match=r"whole revolutions at .* rpm; at least 4 are required"):
         chatter.coefficients(write(tmp_path / "cut.csv", forces), case)
+
+
+@pytest.mark.parametrize(
+    ("times", "words"),
+    [
+        (lambda time: 0.0 * time, "0 s in row 1 is followed by 0 s; times must rise"),
+        (lambda time: time[::-1], "times must rise"),
+        (lambda time: np.where(time > 0.1, np.nan, time), "is followed by nan s; times must rise"),
+    ],
+)
+def test_a_clock_that_does_not_rise_is_refused(tmp_path, case, times, words):
+    forces = forces_of(np.repeat([0.03, 0.06], RATE // 2))
+    file = write(tmp_path / "cut.csv", forces)
+    rows = np.loadtxt(file, delimiter=",", skiprows=1)
+    rows[:, 0] = times(rows[:, 0])
+    heading = file.read_text().splitlines()[0]
+    np.savetxt(file, rows, delimiter=",", comments="", header=heading)
+    with pytest.raises(InputError, match=f"cut.csv: time: .*{words}"):
+        chatter.coefficients(file, case)

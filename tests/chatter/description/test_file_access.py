@@ -5,6 +5,7 @@ import pytest
 import chatter
 from chatter import InputError
 from chatter.description.file_access import VARIABLE
+from chatter.explain.measurement_file import read_measurement
 from tests.cases import TOOL_OF_922_HERTZ
 
 TABLE = "secret"
@@ -71,3 +72,28 @@ def test_a_case_that_was_written_here_may_name_what_the_case_before_named(folder
     written.write_text(written.read_text() + "# changed\n")
     with pytest.raises(InputError, match="outside"):
         chatter.load(written)
+
+
+MEASUREMENT = 'kind = "milling"\ncase = "{case}"\n[[run]]\nfile = "{run}"\n'
+
+
+@pytest.mark.parametrize(
+    ("key", "names"),
+    [
+        ("case", {"case": "../case.toml", "run": "run.csv"}),
+        (r"run 1: file", {"case": "case.toml", "run": "../run.csv"}),
+        (r"run 1: file", {"case": "case.toml", "run": "link.csv"}),
+    ],
+)
+def test_a_measurement_names_files_below_its_folder(folder, monkeypatch, key, names):
+    for place in (folder, folder.parent):
+        (place / "case.toml").write_text(TOOL_OF_922_HERTZ)
+        (place / "run.csv").write_text("time [s],Fx [N]\n0,secret\n1,2\n")
+    (folder / "link.csv").symlink_to("../run.csv")
+    (folder / "measurement.toml").write_text(MEASUREMENT.format(**names))
+    with pytest.raises(InputError, match=rf"measurement\.toml: {key}: .*{VARIABLE}=") as told:
+        read_measurement(folder)
+    assert "secret" not in str(told.value)
+    monkeypatch.setenv(VARIABLE, str(folder.parent))
+    with pytest.raises(InputError, match="secret"):
+        read_measurement(folder)

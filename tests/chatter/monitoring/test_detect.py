@@ -1,6 +1,7 @@
 """`chatter detect`: files of every kind, advice, what is written, what is refused."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -125,7 +126,7 @@ def test_a_speed_that_is_some_percent_off_is_read_off_the_lines(table):
         ({"spindle_speed": "3000"}, "spindle speed"),
         ({"spindle_speed": "-5 rpm"}, "above zero"),
         ({"spindle_speed": "3 mm"}, "spindle speed"),
-        ({"spindle_speed": "3000 rpm", "teeth": 0}, "--teeth is 0"),
+        ({"spindle_speed": "3000 rpm", "teeth": 0}, "--teeth 0: a number from 1 to 200"),
         ({"spindle_speed": "3000 rpm", "sampling_rate": "0 Hz"}, "sampling rate"),
     ],
 )
@@ -223,3 +224,29 @@ def test_simulated_cuts_have_the_verdict_of_their_poincare_sections(depth, verdi
             expected = result.detection.chatter_frequency
             assert found.chatter_frequency == pytest.approx(expected, rel=2e-3)
             assert found.segments[-1].bifurcation == result.detection.bifurcation
+
+
+@pytest.mark.parametrize(
+    ("step", "words"),
+    [
+        (1.0, "1 samples a second, where 20 are needed; is its time in another unit"),
+        (1e-9, "s at 1e+09 samples a second, where 0.01 s are needed; is its time in another unit"),
+        (0.004, "250 samples a second show nothing above 125 Hz; the spindle turns at 200 Hz"),
+    ],
+)
+def test_clocks_that_show_nothing_of_the_cut_are_refused(tmp_path, step, words):
+    time = step * np.arange(2000)
+    path = write_csv(tmp_path / "cut.csv", "time [s],ax [m/s^2]", time, np.sin(np.arange(2000)))
+    with pytest.raises(InputError, match=re.escape(words)):
+        chatter.detect(path, spindle_speed="12000 rpm", teeth=2)
+
+
+def test_a_gap_in_the_time_is_not_filled(tmp_path):
+    """One pause of three hours, which an even clock would fill with 10^8 samples."""
+    time = np.arange(2000) * 1e-4
+    time[1000:] += 1e4
+    rows = np.c_[time, np.sin(np.arange(2000))]
+    path = tmp_path / "cut.csv"
+    np.savetxt(path, rows, delimiter=",", header="time [s],ax [m/s^2]", comments="", fmt="%.9f")
+    with pytest.raises(InputError, match=r"cut\.csv: the time jumps by 1e\+04 s at line 1002"):
+        chatter.detect(path)
