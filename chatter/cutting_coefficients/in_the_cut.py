@@ -10,6 +10,7 @@ import numpy as np
 
 from chatter.cutting_coefficients.mean_forces import FEWEST_REVOLUTIONS, force_channels
 from chatter.description.arrays import Array
+from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.description import AIR
@@ -17,6 +18,8 @@ from chatter.explain.records.stages import stages_of
 
 #: revolutions of air that show an offset, at the least, and those beside the cut that do not count
 _LEAST_AIR, _MARGIN = 2, 2
+#: samples of a revolution by which a force can be followed around it
+_LEAST_SAMPLES = 4
 
 
 class RunInCut(NamedTuple):
@@ -39,6 +42,7 @@ def in_the_cut(measurement: Measurement, run: Run) -> RunInCut:
     where = measurement.folder / run.name
     _require_clock(str(where), time)
     case = run.of(measurement.case)
+    _require_revolutions(str(where), time, case)
     forces = np.array([run.signals[name] for name in names])
     _require_forces(str(where), names, forces)
     turn = 2.0 * math.pi / case.cut.spindle_speed / run.step
@@ -67,6 +71,17 @@ def _require_clock(where: str, time: Array) -> None:
         raise InputError(
             f"{where}: time: {time[first]:.6g} s in row {first + 1} is followed by "
             f"{time[first + 1]:.6g} s; times must rise"
+        )
+
+
+def _require_revolutions(where: str, time: Array, case: Case) -> None:
+    """Raise InputError where the samples of a record are further apart than a cut is told by."""
+    step = float(time[-1] - time[0]) / (time.size - 1)
+    turn = 2.0 * math.pi / case.cut.spindle_speed
+    if _LEAST_SAMPLES * step > turn:
+        raise InputError(
+            f"{where}: time: the samples are {step:.3g} s apart, and a revolution takes "
+            f"{turn:.3g} s; is the time in another unit?"
         )
 
 

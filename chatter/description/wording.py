@@ -53,6 +53,11 @@ def sentences(
         # the misspelt key says it already
         if not (text.startswith(_IS_MISSING) and steps in misspelt)
     ]
+    return first_of(texts, name)
+
+
+def first_of(texts: list[str], name: str) -> list[str]:
+    """As many sentences as somebody reads, and how many more there are."""
     if len(texts) <= _MOST_SENTENCES:
         return texts
     more = len(texts) - _MOST_SENTENCES

@@ -11,8 +11,9 @@ import tomlkit
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.file_name import is_file_name, outside
-from chatter.description.formatting import formatted
+from chatter.description.formatting import formatted, printable
 from chatter.description.units import QuantityError, parse
+from chatter.description.wording import first_of
 from chatter.explain.kinds.kind_list import KINDS, OF_PARTS, ON_MACHINE
 from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.measurement import Measurement, Run
@@ -122,9 +123,11 @@ def _refuse_unknown(
 ) -> None:
     unknown = [key for key in content if key not in keys]
     if unknown:
-        raise InputError(
-            [f"{path}: {where}{key} is not a key; there are {', '.join(keys)}" for key in unknown]
-        )
+        known = ", ".join(keys)
+        texts = [
+            f"{path}: {where}{printable(key)} is not a key; there are {known}" for key in unknown
+        ]
+        raise InputError(first_of(texts, str(path)))
 
 
 def _set_up(path: Path, whole: Measurement, content: Mapping[str, Any]) -> Measurement:

@@ -78,6 +78,11 @@ class Frf:
                 f"{where}: line {line + 1} of the FRF, {np.abs(values[line]):g} at "
                 f"{frequency[line]:g} Hz, is no measured number (at most {LARGEST:g})"
             )
+        if 0.0 < (largest := float(np.abs(values).max())) < 1.0 / LARGEST:
+            raise MeasurementError(
+                f"{where}: the FRF is {largest:g} at the most, which no instrument tells from 0; "
+                f"{1.0 / LARGEST:g} is the least"
+            )
         if np.any(np.diff(frequency) <= 0.0):
             line = int(np.argmax(np.diff(frequency) <= 0.0))
             raise MeasurementError(

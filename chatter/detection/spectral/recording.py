@@ -24,7 +24,7 @@ SLOPES = {
     "unknown": 0.0,
 }
 #: samples that are of any use, samples a second that show vibration at all, and s in which it does
-_FEWEST, _SLOWEST, _SHORTEST = 256, 20.0, 0.01
+_FEWEST, _SLOWEST, _SHORTEST = 256, 20.0, 0.001
 
 
 @dataclass(frozen=True, eq=False)

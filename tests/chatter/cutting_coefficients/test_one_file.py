@@ -198,6 +198,7 @@ def test_a_record_of_less_than_four_revolutions_is_refused_in_words(tmp_path, ca
     [
         (lambda time: 0.0 * time, "0 s in row 1 is followed by 0 s; times must rise"),
         (lambda time: time[::-1], "times must rise"),
+        (lambda time: 1e6 * time, "s apart, and a revolution takes .* another unit"),
         (lambda time: np.where(time > 0.1, np.nan, time), "is followed by nan s; times must rise"),
     ],
 )

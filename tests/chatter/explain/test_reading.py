@@ -318,3 +318,15 @@ def test_runs_of_a_measurement_are_sheets_of_one_workbook(tmp_path):
         np.testing.assert_allclose(run.signals["Fx"], 1e3 * scale * np.arange(64))
     only = read_measurement(f"{tmp_path / 'cuts.xlsx'}#slow")
     assert [run.name for run in only.runs] == ["cuts.xlsx#slow"]
+
+
+def test_keys_without_number_are_told_in_a_few_lines(tmp_path):
+    (tmp_path / "case.toml").write_text(CASE)
+    tables = "".join(f"[t{k}]\n" for k in range(5000))
+    text = f'kind = "milling"\ncase = "case.toml"\n{tables}'
+    (tmp_path / "measurement.toml").write_text(text)
+    with pytest.raises(InputError) as told:
+        read_measurement(tmp_path)
+    assert len(told.value.messages) == 21
+    assert told.value.messages[0].startswith(f"{tmp_path / 'measurement.toml'}: t0 is not a key")
+    assert told.value.messages[-1].endswith("measurement.toml: and 4980 more of this kind")

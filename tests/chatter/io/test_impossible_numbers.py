@@ -50,3 +50,13 @@ def test_times_that_no_recorder_takes_are_questioned(tmp_path, scale):
     scipy.io.savemat(file, named)
     with pytest.raises(MeasurementError, match=r"tap\.mat: .*unit of the time"):
         read_hammer_record(file)
+
+
+def test_an_frf_that_no_instrument_tells_from_nothing_is_refused(tmp_path):
+    frequency = np.linspace(100.0, 2000.0, 400)
+    values = 1e-200 / (900.0**2 - frequency**2 + 40j * frequency)
+    path = tmp_path / "tap.npz"
+    columns = {"frequency [Hz]": frequency, "real [m/N]": values.real, "imag [m/N]": values.imag}
+    np.savez(path, **columns)
+    with pytest.raises(MeasurementError, match=r"tap\.npz.*: the FRF is .* no instrument tells"):
+        read_frfs(path)

@@ -230,7 +230,10 @@ def test_simulated_cuts_have_the_verdict_of_their_poincare_sections(depth, verdi
     ("step", "words"),
     [
         (1.0, "1 samples a second, where 20 are needed; is its time in another unit"),
-        (1e-9, "s at 1e+09 samples a second, where 0.01 s are needed; is its time in another unit"),
+        (
+            1e-9,
+            "s at 1e+09 samples a second, where 0.001 s are needed; is its time in another unit",
+        ),
         (0.004, "250 samples a second show nothing above 125 Hz; the spindle turns at 200 Hz"),
     ],
 )
