@@ -1,8 +1,9 @@
 """Which files a case or machine file may name: those below its folder, and what the user allows.
 
 A file from a stranger must not read what lies elsewhere. Allowed are the folder of the file, the
-folder in which the program was started, the folders of an environment variable, and whatever a file
-names that this user's chatter wrote itself, such as the case of an optimum in a folder of results.
+folder in which the program was started or that the workbench was given, the folders of an
+environment variable, and whatever a file names that this user's chatter wrote itself, such as the
+case of an optimum in a folder of results.
 """
 
 from __future__ import annotations
@@ -18,6 +19,14 @@ VARIABLE = "CHATTER_FILES"
 _WRITTEN = "written-files"
 #: what was written first is forgotten beyond this, bytes
 _MOST_WRITTEN = 1 << 20
+
+#: folders that the user opened in this process
+_OPENED: set[Path] = set()
+
+
+def open_folder(folder: Path) -> None:
+    """Allow what lies in a folder that the user gave to work in."""
+    _OPENED.add(_resolved(folder))
 
 
 def is_allowed(file: Path, folder: Path) -> bool:
@@ -35,6 +44,7 @@ def _resolved(path: Path) -> Path:
 
 def _roots(folder: Path) -> Iterator[Path]:
     yield _resolved(folder)
+    yield from _OPENED
     with suppress(OSError):  # the folder is gone
         yield _resolved(Path.cwd())
     for name in os.environ.get(VARIABLE, "").split(os.pathsep):

@@ -14,6 +14,7 @@ import tomlkit
 from chatter.app.workbench.folder_files import is_cut, is_machine
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
+from chatter.description.file_access import open_folder
 from chatter.description.path import parse_path
 from chatter.description.stated_range import open_stated_ranges
 from chatter.description.toml_editing import set_value
@@ -52,6 +53,7 @@ class Session:
 
     def __init__(self, folder: Path) -> None:
         self.root = folder.resolve()
+        open_folder(self.root)
         self.name = ""
         self.text = ""
         self.case: Case | None = None

@@ -4,6 +4,8 @@ import pytest
 
 import chatter
 from chatter import InputError
+from chatter.app.workbench.session import Session
+from chatter.description import file_access
 from chatter.description.file_access import VARIABLE
 from chatter.explain.measurement_file import read_measurement
 from tests.cases import TOOL_OF_922_HERTZ
@@ -72,6 +74,19 @@ def test_a_case_that_was_written_here_may_name_what_the_case_before_named(folder
     written.write_text(written.read_text() + "# changed\n")
     with pytest.raises(InputError, match="outside"):
         chatter.load(written)
+
+
+def test_a_folder_that_the_workbench_was_given_is_allowed(folder, monkeypatch):
+    monkeypatch.setattr(file_access, "_OPENED", set())
+    path = case_with(folder, "../own.toml")
+    with pytest.raises(InputError, match="own"):
+        chatter.load(path)
+    Session(folder.parent)
+    assert chatter.load(path).material.Ktc == pytest.approx(600e6)
+    path = case_with(folder, "../../start/own.toml")
+    monkeypatch.chdir(folder)
+    with pytest.raises(InputError, match="lies outside"):
+        chatter.load(path)
 
 
 MEASUREMENT = 'kind = "milling"\ncase = "{case}"\n[[run]]\nfile = "{run}"\n'
