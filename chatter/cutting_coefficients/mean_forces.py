@@ -19,6 +19,8 @@ from chatter.explain.records.description import FORCE, Channel
 _USUAL = ("Fx", "Fy", "Fz")
 #: revolutions of which a mean has a scatter
 FEWEST_REVOLUTIONS = 4
+#: samples of which a clock has a step
+_FEWEST_SAMPLES = 2
 #: share of its value by which a force is uncertain at the least: gain and crosstalk of a
 #: dynamometer
 GAIN = 0.01
@@ -59,6 +61,8 @@ def _of_run(measurement: Measurement, run: Run) -> list[MeanForce]:
     if not channels:
         raise InputError(f"{where}: no force has a known direction; [channels.NAME] direction says")
     time = run.signals["time"]
+    if time.size < _FEWEST_SAMPLES:
+        raise InputError(f"{where}: {time.size} sample is no record of a cut")
     count, revolutions = _whole_revolutions(own, time)
     if revolutions < FEWEST_REVOLUTIONS:
         raise InputError(

@@ -91,6 +91,11 @@ class Frf:
             )
         if frequency[0] < 0.0:
             raise MeasurementError(f"{where}: negative frequency {frequency[0]:g} Hz")
+        if frequency[-1] < 1.0 / LARGEST:
+            raise MeasurementError(
+                f"{where}: the last line of the FRF is at {frequency[-1]:g} Hz; nothing that is "
+                f"measured ends below {1.0 / LARGEST:g} Hz"
+            )
         if self.quantity not in DERIVATIVE_ORDER:
             raise MeasurementError(
                 f"{where}: quantity {self.quantity!r}; allowed are {', '.join(DERIVATIVE_ORDER)}"

@@ -60,7 +60,8 @@ def activity_levels(frames: Frames, silent: NDArray[np.bool_]) -> Array:
     median over bands, which the noise of cutting raises where hum hides the power.
     """
     power = frames.power[~silent]
-    width = max(round(_BAND * frames.half_width / frames.step), 4)
+    # a slow recording has a single band
+    width = min(max(round(_BAND * frames.half_width / frames.step), 4), frames.frequency.size)
     count = frames.frequency.size // width
     bands = power[:, : count * width].reshape(len(power), count, width)
     least = _SILENCE * float(power.max()) + 1e-300

@@ -211,3 +211,9 @@ def test_a_clock_that_does_not_rise_is_refused(tmp_path, case, times, words):
     np.savetxt(file, rows, delimiter=",", comments="", header=heading)
     with pytest.raises(InputError, match=f"cut.csv: time: .*{words}"):
         chatter.coefficients(file, case)
+
+
+def test_a_record_of_one_sample_is_refused(tmp_path, case):
+    file = write(tmp_path / "cut.csv", forces_of([0.03])[:1])
+    with pytest.raises(InputError, match=r"cut\.csv: 1 sample is no record of a cut"):
+        chatter.coefficients(file, case)

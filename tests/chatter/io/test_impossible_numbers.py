@@ -60,3 +60,11 @@ def test_an_frf_that_no_instrument_tells_from_nothing_is_refused(tmp_path):
     np.savez(path, **columns)
     with pytest.raises(MeasurementError, match=r"tap\.npz.*: the FRF is .* no instrument tells"):
         read_frfs(path)
+
+
+def test_an_frf_of_no_frequency_is_refused():
+    frequency = np.arange(10.0, 20.0) * 1e-200
+    with pytest.raises(
+        MeasurementError, match=r"beam: the last line of the FRF is at 1\.9e-199 Hz"
+    ):
+        Frf(frequency, np.full(10, 1e-7 + 0j), source="beam")

@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -253,3 +254,14 @@ def test_a_gap_in_the_time_is_not_filled(tmp_path):
     np.savetxt(path, rows, delimiter=",", header="time [s],ax [m/s^2]", comments="", fmt="%.9f")
     with pytest.raises(InputError, match=r"cut\.csv: the time jumps by 1e\+04 s at line 1002"):
         chatter.detect(path)
+
+
+@pytest.mark.parametrize("rate", [210.0, 250.0])
+def test_a_slow_recording_has_a_single_band(rate):
+    """Fewer lines than a band has: the median over no band was not a number."""
+    values = np.random.default_rng(1).normal(size=(300, 1))
+    recording = Recording("cut", 1.0 / rate, ("a",), ("acceleration",), values)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        found = chatter.detect(recording, teeth=2, spindle_speed="6000 rpm")
+    assert [one.verdict for one in found.segments] == ["idle"]
