@@ -49,6 +49,8 @@ _RANGE, _SIGNIFICANT, _UNCERTAINTY = 0.015, 8.0, 1e-3
 _HISTORY = 48
 #: such windows from one look at them together to the next, and the time, s, at the least
 _TOGETHER_EVERY, _TOGETHER_SHORTEST = 16, 2.0
+#: the same while fewer windows are remembered than can be: such a look takes less time
+_EARLY_EVERY, _EARLY_SHORTEST = 8, 1.0
 #: share of the power of a line down to which it goes on
 _AS_BEFORE = 0.25
 #: verdicts in a row of which the first is believed
@@ -129,6 +131,7 @@ class RunningDetection:
         self._together: Future[JudgedTogether] | None = None
         quarter = self._quarter * self._hop * start.time_step
         self._together_every = max(_TOGETHER_EVERY, math.ceil(_TOGETHER_SHORTEST / quarter))
+        self._early_every = max(_EARLY_EVERY, math.ceil(_EARLY_SHORTEST / quarter))
         #: chatter that windows showed together, and that holds
         self._held: _Held | None = None
 
@@ -230,10 +233,9 @@ class RunningDetection:
             elif found.shows_rest or found.speed_is_refuted or not self._goes_on():
                 self._held = None
             self._together = None
-        if (
-            self._together is None
-            and (self._count // self._quarter + 1) % self._together_every == 0
-        ):
+        is_early = len(self._history) < _HISTORY
+        every = self._early_every if is_early else self._together_every
+        if self._together is None and (self._count // self._quarter + 1) % every == 0:
             joined = _joined([one.recording for one in self._history])
             self._together = self._background.submit(
                 judged_together, joined, self._given, self._teeth

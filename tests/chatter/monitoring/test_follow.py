@@ -59,6 +59,11 @@ def observed_at(factor, begin):
     """Verdicts on a record that begins at a time, with the speed stated wrong by a factor."""
     values = made(begin)[:, None]
     found = running(values[:, 0], factor * REVOLUTION)
+    return taken_in_time(found, values)
+
+
+def taken_in_time(found, values):
+    """Observations of samples that come no faster than windows are judged together."""
     observed = []
     for part in np.array_split(values, 40):
         observed += found.take(part)
@@ -95,7 +100,7 @@ def test_a_speed_some_percent_off_is_read_off_the_lines(factor, begin, verdict):
 
 def test_a_stable_cut_after_chatter_is_not_idle():
     values = np.concatenate([made(9.0, 2.0), made(0.0, 2.0), made(9.0, 4.0)])
-    observed = running(values).take(values[:, None])
+    observed = taken_in_time(running(values), values[:, None])
     assert {one.verdict for one in observed if 3.2 < one.time < 3.9} == {"chatter"}
     assert {one.verdict for one in observed if one.time > 5.5} == {"stable"}
 
