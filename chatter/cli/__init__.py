@@ -121,10 +121,17 @@ def _of_all(
     """Chatter and stability of milling, and the machines that it happens on."""
 
 
+def _completes_for_a_shell() -> bool:
+    """Whether a shell asks what may follow: click's variable of the program's name is set."""
+    return any(name.startswith("_") and name.endswith("_COMPLETE") for name in os.environ)
+
+
 def main() -> None:
     """Run the command line."""
     leave_documentation_out()
-    START_UP.begin()
+    # a word would stand between what the shell completes
+    if not _completes_for_a_shell():
+        START_UP.begin()
     start_without_collection()
     try:
         program()

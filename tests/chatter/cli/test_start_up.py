@@ -1,10 +1,14 @@
 """The program says that it is loaded, where that takes long, and only then."""
 
+import os
+import subprocess
+import sys
 import threading
 import time
 
 from chatter.cli import start_up
 from chatter.cli.start_up import StartUp, is_importing
+from tests.places import ROOT
 
 
 def test_an_import_is_seen(tmp_path, monkeypatch):
@@ -58,3 +62,25 @@ def test_a_word_that_is_being_said_ends_before_the_program(monkeypatch):
     time.sleep(0.1)
     of_program.close()
     assert said == ["loading the program ..."]
+
+
+def test_no_word_between_what_a_shell_completes(tmp_path):
+    slow = tmp_path / "sitecustomize.py"
+    slow.write_text(
+        "from chatter.cli import start_up\n"
+        "start_up._SAID_AFTER = 0.0\n"
+        "start_up.is_importing = lambda thread: True\n",
+        encoding="utf-8",
+    )
+    words = {"COMP_WORDS": "chatter lo", "COMP_CWORD": "1"}
+    of_user = {**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
+
+    def said(**given):
+        command = [sys.executable, "-c", "from chatter.cli import main; main()", "materials"]
+        done = subprocess.run(
+            command, env={**of_user, **given}, capture_output=True, text=True, check=False
+        )
+        return done.stderr
+
+    assert "loading the program" in said()
+    assert said(_CHATTER_COMPLETE="complete_bash", **words) == ""
