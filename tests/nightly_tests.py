@@ -20,17 +20,18 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 LIST = ROOT / "tests" / "nightly.txt"
 #: seconds from which on a case of a test is slow, and a test that has but one
-SLOW_CASE, SLOW_TEST = 0.7, 2.0
+SLOW_CASE, SLOW_TEST = 0.5, 1.0
 #: published numbers and the rules of the tree stay in every run
 _ALWAYS = (
     "tests/validation/test_published.py",
     "tests/validation/test_hajdu_2020.py",
     "tests/test_architecture.py",
 )
-#: trees of the physics: no test without cases is left out here
+#: trees of the physics, and of published machines: no test without cases is left out here
 _PHYSICS = (
     "tests/cutting/",
     "tests/dynamics/",
+    "tests/examples/",
     "tests/validation/",
     "tests/chatter/compile/",
     "tests/chatter/detection/",
