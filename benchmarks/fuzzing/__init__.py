@@ -12,6 +12,7 @@ module         responsibility
 from_schema    strategies of values and documents from a JSON schema
 from_shipped   strategies of shipped documents with changed, added and missing keys
 damaged_bytes  strategies of damaged content of files
+odd_records    strategies of whole records that no cut makes
 sample_files   a real file of every format
 answers        what is asked of each kind of input
 isolated       one input in a process of its own, within limits of time and memory

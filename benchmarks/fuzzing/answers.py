@@ -19,6 +19,7 @@ from benchmarks.fuzzing import damaged_bytes
 from benchmarks.fuzzing.from_schema import Schema, documents
 from benchmarks.fuzzing.from_shipped import changed
 from benchmarks.fuzzing.isolated import ANSWERED, FAILED, refusal
+from benchmarks.fuzzing.odd_records import odd_tables
 from benchmarks.fuzzing.sample_files import REPOSITORY, write_samples
 from chatter.cli import program
 from chatter.description.case import load
@@ -196,7 +197,7 @@ _MACHINE = (linearised, moved, command("frf", "--out", "OUT"))
 _MEASUREMENT = (read_set, compared)
 #: what is asked of files by what they hold: FRFs and taps, recordings, anything
 _FILE = {
-    "tap": (read_as_all, modal_fit, command("modes", "--out", "OUT")),
+    "tap": (read_as_all, modal_fit, listened_to, command("modes", "--out", "OUT")),
     "trace": (read_as_all, listened_to),
     "": (read_as_all,),
 }
@@ -247,6 +248,8 @@ def sources(folder: Path, kinds: tuple[str, ...] = KINDS) -> Iterator[Source]:
         for path in write_samples(folder / "file"):
             whole = path.read_bytes()
             inputs = damaged_bytes.damaged(whole)
+            if path.name == "tap.csv":
+                inputs |= odd_tables(whole)
             stem = "tap" if path.stem in _FRFS else path.stem.rstrip("0123456789")
             answers = _FILE.get("trace" if stem in ("cut", "mr") else stem, _FILE[""])
             yield Source("file", path.name, path, whole, inputs, answers)

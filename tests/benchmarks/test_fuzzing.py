@@ -14,6 +14,7 @@ from benchmarks.fuzzing.campaign import campaign, read_journal, table
 from benchmarks.fuzzing.from_schema import documents
 from benchmarks.fuzzing.from_shipped import nodes_at, paths
 from benchmarks.fuzzing.isolated import AS_IT_SHOULD, REFUSED, Worker, in_words
+from benchmarks.fuzzing.odd_records import odd_tables
 from chatter import InputError
 from chatter.description.case import loads
 from chatter.explain.measurement_schema import measurement_schema
@@ -155,3 +156,14 @@ def test_values_fit_their_bounds_mostly():
     fitting = [n for n in drawn if isinstance(n, int) and 2 <= n <= 5]
     assert set(fitting) == {2, 3, 4, 5}
     assert len(fitting) > len(drawn) // 2
+
+
+TAP = "time [s],force [N]\n" + "\n".join(f"{1e-3 * k:g},{k % 7}" for k in range(300)) + "\n"
+
+
+@settings(max_examples=COUNT, deadline=None, database=None, phases=[Phase.generate])
+@given(content=odd_tables(TAP.encode()))
+def test_odd_records_are_read_or_refused(tmp_path_factory, content):
+    path = tmp_path_factory.mktemp("record") / "tap.csv"
+    path.write_bytes(content)
+    assert in_words(lambda: read_as_all(path), (path.name,)) in AS_IT_SHOULD
