@@ -9,9 +9,10 @@ from typing import Any
 import panel as pn
 
 from chatter.app.workbench.computations import Computation, Computations
-from chatter.app.workbench.separate_process import in_own_process
+from chatter.app.workbench.separate_process import Report, in_own_process
 from chatter.app.workbench.session import without_folder
 from chatter.app.workbench.wrapped_text import wrapped_text
+from chatter.description.file_access import open_folder
 from chatter.description.progress import Progress
 
 
@@ -45,7 +46,8 @@ class LongWork:
 
         def compute(go_on: Progress) -> None:
             try:
-                in_own_process(function, arguments, go_on, self.report)
+                given = (self._root, function, arguments)
+                in_own_process(_in_folder, given, go_on, self.report)
                 self.show_message(note)
             finally:
                 self._show(lambda: self.progress.param.update(value=0, active=False))
@@ -64,3 +66,11 @@ class LongWork:
         """Show a sentence, with names relative to the folder."""
         told = without_folder(text, self._root)
         self._show(lambda: setattr(self.message, "object", told))
+
+
+def _in_folder(
+    root: Path, function: Callable[..., Any], arguments: tuple[Any, ...], report: Report
+) -> Any:
+    """Call a function in its process, where what lies in the folder of the session is allowed."""
+    open_folder(root)
+    return function(*arguments, report)

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
-import tomlkit
 
+from chatter.app.workbench.channel_assignment import ChannelAssignment
 from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.residual_file import RESIDUALS
 from chatter.app.workbench.residual_view import ResidualView
@@ -18,16 +18,13 @@ from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session, checked_name, readable_extensions
 from chatter.app.workbench.studies import run_measurement
 from chatter.app.workbench.upload import dropper
-from chatter.description.assignments import parse_assignments
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import load
 from chatter.description.errors import InputError
-from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement_file import read_measurement
-from chatter.explain.records.description import QUANTITIES, SIDES
-from chatter.io.signals import read_signals
 
 _FOLDER, _FILE, _UPDATED = "measurements", "measurement.toml", "case-updated.toml"
-_BEGINS = ("rest", "air", "cut")
+_CASE = "case.toml"
 _OPEN_CASE = "the open case"
 _DECLARED = "the one that it names"
 
@@ -53,6 +50,9 @@ class MeasurementView:
         self._session, self._opened = session, opened
         self.name = pn.widgets.TextInput(label="Name of the new folder", value="set-1", width=220)
         self.upload = dropper(self.take, "Records, with measurement.toml where there is one")
+        self.upload.begun = self._drop_begins
+        #: folder that the files of a drop go to, whatever is begun while they come
+        self._dropped_into: str | None = None
         self.folder = pn.widgets.Select(label="Measurement", options=[], width=300)
         self.case = pn.widgets.Select(label="Case", options=[_DECLARED, _OPEN_CASE], width=200)
         self.compare_button = pn.widgets.Button(label="Compare", color="primary")
@@ -64,13 +64,18 @@ class MeasurementView:
             stylesheets=["textarea {font-family: monospace; font-size: 12.5px; white-space: pre}"],
         )  # fmt: skip
         self.write_button = pn.widgets.Button(label="Write measurement.toml")
+        #: what is wrong with the assignment, beside it
+        self.fault = wrapped_text(width=560, styles={"color": "#c62828"})
         self.assignment = ChannelAssignment(self._assigned)
         self._channels = pn.Card(
-            pn.Row(self.assignment, pn.Column(self.text, self.write_button)),
+            pn.Row(self.assignment, pn.Column(self.fault, self.text, self.write_button)),
             title="Runs and channels", collapsed=True, min_width=1200,
         )  # fmt: skip
         #: folders whose measurement.toml is a draft of the page: further records go into it
         self._drafts: set[str] = set()
+        #: folder that the assignment is of, and measurement.toml as it stood when it was shown
+        self._assigned_to: str | None = None
+        self._text_of_file = ""
         self.work = LongWork(session.root, show)
         self.call, self._result, self.residuals = pn.Column(), pn.Column(), ResidualView()
         self.compare_button.on_click(lambda _: self.start("compare"))
@@ -108,32 +113,49 @@ class MeasurementView:
         """Write uploaded files into a folder of their own; offer their channels for assignment."""
         session = self._session
         try:
-            name = checked_name(f"{self.name.value.strip()}.toml", (".toml",))[:-5]
-            folder = f"{_FOLDER}/{name}"
+            folder = self._dropped_into or self._new_folder()
+            checked_name(f"{Path(folder).name}.toml", (".toml",))
             session.store(folder, files, (*readable_extensions(), ".toml"))
             path = session.path(folder)
             if _FILE in files:
                 self._drafts.discard(folder)
                 self._channels.collapsed = True
             elif folder in self._drafts or not (path / _FILE).exists():
-                self._draft(folder, [path / one for one in sorted(files)])
+                self._draft(folder)
         except InputError as error:
             self.work.show_message(str(error))
             return
         self.refresh()
         self.folder.value = folder
         self._show()
-        self._say_what_is_wrong(folder, f"{len(files)} files are in {folder}")
+        self._say_what_is_wrong(folder, f"{_counted(len(files))} in {folder}")
 
-    def _draft(self, folder: str, files: list[Path]) -> None:
+    def _new_folder(self) -> str:
+        """Folder of what is dropped next."""
+        return f"{_FOLDER}/{self.name.value.strip()}"
+
+    def _drop_begins(self) -> None:
+        self._dropped_into = self._new_folder()
+
+    def _draft(self, folder: str) -> None:
         """Write a first measurement.toml: files come one by one, and each is a run."""
+        path = self._session.path(folder)
+        if folder not in self._drafts:
+            self.assignment.begin()
         self._drafts.add(folder)
-        records = [path for path in files if path.suffix != ".toml"]
-        self.assignment.offer(records)
-        self._assigned()
-        path = self._session.path(f"{folder}/{_FILE}")
-        path.write_text(self.text.value, encoding="utf-8")
+        self._assigned_to = folder
+        records = (one for one in path.iterdir() if one.suffix.lower() in readable_extensions())
+        self.assignment.offer(sorted(records))
+        self.text.value = self.assignment.toml(self._case_from(folder))
+        (path / _FILE).write_text(self.text.value, encoding="utf-8")
         self._channels.collapsed = False
+
+    def _case_from(self, folder: str) -> str:
+        """Case that a measurement names: the one that was dropped with it, or the open one."""
+        session, path = self._session, self._session.path(folder)
+        if (path / _CASE).is_file() or not session.name:
+            return _CASE
+        return Path(os.path.relpath(session.path(session.name), path)).as_posix()
 
     def write(self) -> None:
         """Write measurement.toml as it stands in the text, and say what is wrong with it."""
@@ -141,7 +163,7 @@ class MeasurementView:
         if name is None:
             return
         self._drafts.discard(name)
-        self._session.path(f"{name}/{_FILE}").write_text(self.text.value, encoding="utf-8")
+        self._write_text(name)
         self._say_what_is_wrong(name, f"{name}/{_FILE} is written")
 
     def _say_what_is_wrong(self, folder: str, else_say: str) -> None:
@@ -166,12 +188,19 @@ class MeasurementView:
         except InputError as error:
             self.work.show_message(str(error))
             return
+        if self.text.value != self._text_of_file:  # what is shown is what is used
+            self._write_text(self.folder.value)
         self._name_the_next()
         call = self._call(name, own)
         self.call.objects = [same_call(call)]
         path = self._session.path(self.folder.value)
         arguments = (name, path, case, call, self._results(name))
         self.work.start(run_measurement, arguments, self._show)
+
+    def _write_text(self, folder: str) -> None:
+        path = self._session.path(f"{folder}/{_FILE}")
+        path.write_text(self.text.value, encoding="utf-8")
+        self._text_of_file = self.text.value
 
     def _name_the_next(self) -> None:
         """Propose a new folder for what is dropped once work on this one has begun."""
@@ -210,6 +239,7 @@ class MeasurementView:
         path = self._session.path(f"{self.folder.value}/{_FILE}")
         if path.is_file():
             self.text.value = path.read_text(encoding="utf-8", errors="replace")
+            self._text_of_file = self.text.value
         parts: list[Any] = []
         for name in ("explain", "compare"):
             parts += result_panel(self._results(name))
@@ -228,127 +258,21 @@ class MeasurementView:
 
     def _assigned(self) -> None:
         """Write the assignment of the channels into the text."""
-        session = self._session
-        folder = session.path(f"{_FOLDER}/{self.name.value.strip()}")
-        case = os.path.relpath(session.path(session.name), folder) if session.name else "case.toml"
+        if self._assigned_to is None or self.folder.value != self._assigned_to:
+            return
         try:
-            self.text.value = self.assignment.toml(Path(case).as_posix())
+            self.text.value = self.assignment.toml(self._case_from(self._assigned_to))
         except InputError as error:
-            self.work.show_message(str(error))
+            self.fault.object = str(error)
+        else:
+            self.fault.object = ""
 
 
-class ChannelAssignment:
-    """What each channel of the records is, by hand, and what each run differs in from the case.
-
-    Parameters
-    ----------
-    changed : callable
-        Called when an assignment has changed.
-    """
-
-    def __init__(self, changed: Callable[[], None]) -> None:
-        self._changed = changed
-        self.kind = pn.widgets.Select(label="Kind", options=list(KINDS), width=130)
-        self.begins = pn.widgets.Select(label="Record begins", options=list(_BEGINS), width=130)
-        self.angle = pn.widgets.Checkbox(label="spindle angle unknown", value=True)
-        self.channels: dict[str, tuple[Any, ...]] = {}
-        self.runs: dict[str, Any] = {}
-        self._rows = pn.Column(pn.pane.Str("Drop records without a measurement.toml to assign "
-                                           "their channels here."))  # fmt: skip
-        for widget in (self.kind, self.begins, self.angle):
-            widget.param.watch(lambda _: self._changed(), "value")
-
-    def __panel__(self) -> pn.viewable.Viewable:
-        """Return the form for the page."""
-        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=600)
-
-    def offer(self, records: list[Path]) -> None:
-        """Make a row for every channel of the records and for every run."""
-        names: dict[str, None] = {}
-        for path in records:
-            names |= dict.fromkeys(read_signals(path))
-        # what was assigned stays: records come one by one
-        self.channels = {name: self.channels.get(name) or self._watched(_assignment())
-                         for name in names if not _is_time(name)}  # fmt: skip
-        self.runs = {path.name: self.runs.get(path.name) or self._run_of(path)
-                     for path in records}  # fmt: skip
-        rows = [
-            pn.Row(pn.pane.Str(name, width=110), *widgets)
-            for name, widgets in self.channels.items()
-        ]
-        self._rows.objects = [
-            pn.pane.Markdown("What each channel measures, on which side, along which direction:"),
-            *rows,
-            pn.pane.Markdown("What each run differs in from the case:"),
-            *self.runs.values(),
-        ]
-
-    def _watched(self, widgets: tuple[Any, ...]) -> tuple[Any, ...]:
-        for widget in widgets:
-            widget.param.watch(lambda _: self._changed(), "value")
-        return widgets
-
-    def _run_of(self, path: Path) -> Any:
-        """Field for what a run differs in from the case."""
-        field = pn.widgets.TextInput(
-            label=path.name, placeholder="spindle_speed=8000 rpm; axial_depth=1 mm", width=480
-        )
-        return self._watched((field,))[0]
-
-    def toml(self, case: str) -> str:
-        """Text of measurement.toml; InputError if a run is no list of assignments."""
-        document = tomlkit.document()
-        document["kind"], document["case"] = self.kind.value, case
-        assigned = {
-            name: (quantity.value, side.value, direction.value.strip())
-            for name, (quantity, side, direction) in self.channels.items()
-            if quantity.value
-        }
-        if assigned:
-            record = {"begins": self.begins.value}
-            if self.angle.value:
-                record["spindle_angle"] = "unknown"
-            document["record"] = record
-            channels = tomlkit.table()
-            for name, (quantity, side, direction) in assigned.items():
-                channels[name] = _entry(name, quantity, side, direction)
-            document["channels"] = channels
-        runs = tomlkit.aot()
-        for name, widget in self.runs.items():
-            given = [one.strip() for one in widget.value.split(";") if one.strip()]
-            runs.append(tomlkit.item({"file": name, **parse_assignments(given)}))
-        document["run"] = runs
-        return tomlkit.dumps(document)
+def _counted(files: int) -> str:
+    return "1 file is" if files == 1 else f"{files} files are"
 
 
 def _last_written(folder: Path) -> float:
     """Time at which the residuals of a folder were written, s; 0 where there are none."""
     path = folder / RESIDUALS
     return path.stat().st_mtime if path.is_file() else 0.0
-
-
-def _assignment() -> tuple[Any, Any, Any]:
-    """Quantity, side and direction of a channel, to be chosen."""
-    return (
-        pn.widgets.Select(options=["", *QUANTITIES], width=140),
-        pn.widgets.Select(options=list(SIDES), width=90),
-        pn.widgets.TextInput(placeholder="x, [0.7, 0.7, 0], unknown", width=150),
-    )
-
-
-_AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
-
-
-def _entry(name: str, quantity: str, side: str, direction: str) -> Any:
-    entry: dict[str, Any] = {"quantity": quantity}
-    if quantity in ("force", "displacement", "velocity", "acceleration"):
-        entry["on"] = side
-        given = parse_assignments([f"{name}={direction or 'unknown'}"])[name]
-        entry["direction"] = _AXES.get(direction, given)
-    found = tomlkit.inline_table()
-    found.update(entry)
-    return found
-
-
-def _is_time(name: str) -> bool:
-    return name.strip().lower() in ("time", "t")

@@ -135,17 +135,92 @@ def test_channels_are_assigned_by_hand(workbench, tmp_path):
     view.take({"run01.csv": "\n".join(rows).encode()})
     assert set(view.assignment.channels) == {"F1", "a1"}
     quantity, side, direction = view.assignment.channels["F1"]
-    quantity.value, side.value, direction.value = "force", "workpiece", "y"
-    view.assignment.runs["run01.csv"].value = "spindle_speed=9000 rpm; axial_depth=1 mm"
+    quantity.value, side.value, direction.value = "force", "workpiece", "-y"
+    run = view.assignment.runs["run01.csv"]
+    run.fields["spindle_speed"].value = "9000"
+    run.fields["axial_depth"].value = "1000 um"
+    run.others.value = "cut time 3 s"
+    assert 'run01.csv: others: "cut time 3 s"' in view.fault.object
+    run.others.value = "cut_time=3 s; mode=up"
+    assert view.fault.object == ""
     view.write()
     written = tomlkit.parse((tmp_path / "measurements/set-1/measurement.toml").read_text())
     assert written["channels"]["F1"].unwrap() == {
-        "quantity": "force", "on": "workpiece", "direction": [0, 1, 0]
+        "quantity": "force", "on": "workpiece", "direction": [0, -1, 0]
     }  # fmt: skip
     assert written["run"][0].unwrap() == {
-        "file": "run01.csv", "spindle_speed": "9000 rpm", "axial_depth": "1 mm"
+        "file": "run01.csv", "spindle_speed": "9000 rpm", "axial_depth": "1000 um",
+        "cut_time": "3 s", "mode": "up",
     }  # fmt: skip
     assert (tmp_path / "measurements/set-1" / written["case"]).resolve() == tmp_path / "case.toml"
+
+
+def test_a_direction_is_an_axis_with_its_sign_or_three_numbers(workbench):
+    view = workbench.measurement
+    view.take({"run01.csv": record("F1")})
+    quantity, _, direction = view.assignment.channels["F1"]
+    quantity.value = "force"
+
+    def written(text):
+        direction.value = text
+        return tomlkit.parse(view.text.value)["channels"]["F1"]["direction"]
+
+    assert written(" -Z ") == [0, 0, -1]
+    assert written("+x") == [1, 0, 0]
+    assert written("0.6, -0.8, 0") == [0.6, -0.8, 0.0]
+    assert written("") == written("unknown") == "unknown"
+    written("normal")
+    assert 'channel F1: direction: "normal"' in view.fault.object
+
+
+def test_what_is_shown_is_compared_with_the_open_case_beside_the_folder(workbench, tmp_path):
+    """The open case lies outside of the new folder: its own draft was refused in the process of a
+    comparison, which took the file as it was before the channels were assigned."""
+    view = workbench.measurement
+    view.take({"run01.csv": record("F1")})
+    view.assignment.channels["F1"][0].value = "force"
+    view.start("compare")
+    assert view.work.computations.wait(PATIENCE)
+    assert "lies outside" not in view.work.message.object
+    path = tmp_path / "measurements/set-1/measurement.toml"
+    assert tomlkit.parse(path.read_text())["channels"]["F1"]["quantity"] == "force"
+    # what another program has written meanwhile is not overwritten by what is shown
+    path.write_text("kind = 'none'\n")
+    view.start("compare")
+    assert view.work.computations.wait(PATIENCE)
+    assert "none of milling" in view.work.message.object
+
+
+def test_files_of_one_drop_stay_together_when_work_begins_meanwhile(workbench, tmp_path):
+    """The later ones went into the folder that was proposed for what is dropped next."""
+    view = workbench.measurement
+    view.upload.begun()
+    view.take({"run01.csv": record("F1")})
+    view.start("compare")
+    assert view.work.computations.wait(PATIENCE)
+    assert view.name.value == "set-2"
+    view.take({"run02.csv": record("F1")})
+    folder = tmp_path / "measurements" / "set-1"
+    written = tomlkit.parse((folder / "measurement.toml").read_text())
+    assert [run["file"] for run in written["run"]] == ["run01.csv", "run02.csv"]
+    # the next drop is of the folder that is named now, and begins anew
+    view.assignment.kind.value = "axis"
+    view.upload.begun()
+    view.take({"run03.csv": record("F1")})
+    written = tomlkit.parse((tmp_path / "measurements/set-2/measurement.toml").read_text())
+    assert (written["kind"], [run["file"] for run in written["run"]]) == ("milling", ["run03.csv"])
+
+
+def test_judged_cuts_are_a_table_of_their_case(workbench, tmp_path):
+    view = workbench.measurement
+    own = (tmp_path / "case.toml").read_bytes()
+    rows = b"spindle_speed [rpm],axial_depth [mm],stable\n20000,0.5,1\n20000,9.5,0\n"
+    view.take({"points.csv": rows, "case.toml": own})
+    view.assignment.kind.value = "stability"
+    view.write()
+    written = tomlkit.parse((tmp_path / "measurements/set-1/measurement.toml").read_text())
+    assert written.unwrap() == {"kind": "stability", "case": "case.toml", "points": "points.csv"}
+    assert "is written" in view.work.message.object
 
 
 def record(channel):
