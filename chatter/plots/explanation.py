@@ -74,8 +74,7 @@ def plot_comparison(comparison: Comparison) -> Figure:
 def plot_signals(measurement: Measurement) -> Figure:
     """Draw the signals of the first run as recorded."""
     run = measurement.runs[0]
-    abscissa = next((name for name in _ABSCISSAE if name in run.signals), "")
-    channels = [name for name in run.signals if name != abscissa]
+    channels = [name for name in run.signals if name not in _ABSCISSAE] or list(run.signals)
     figure = style.new_figure(7.0, 0.8 + 1.4 * len(channels))
     figure.suptitle(f"{measurement.title}: {run.name}", fontsize=11.0, x=0.01, ha="left")
     panels = figure.subplots(len(channels), 1, squeeze=False)

@@ -52,7 +52,7 @@ class ChannelAssignment:
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the form for the page."""
-        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=640)
+        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=720)
 
     def begin(self) -> None:
         """Forget what was assigned in the measurement before."""

@@ -60,16 +60,16 @@ class MeasurementView:
         self.accept_button = pn.widgets.Button(label="Accept the repaired case", disabled=True)
         self.accepted_name = pn.widgets.TextInput(label="as", value="repaired.toml", width=200)
         self.text = pn.widgets.TextAreaInput(
-            label=_FILE, width=560, height=330, max_length=200_000,
+            label=_FILE, width=500, height=330, max_length=200_000,
             stylesheets=["textarea {font-family: monospace; font-size: 12.5px; white-space: pre}"],
         )  # fmt: skip
         self.write_button = pn.widgets.Button(label="Write measurement.toml")
         #: what is wrong with the assignment, beside it
-        self.fault = wrapped_text(width=560, styles={"color": "#c62828"})
+        self.fault = wrapped_text(width=500, styles={"color": "#c62828"})
         self.assignment = ChannelAssignment(self._assigned)
         self._channels = pn.Card(
             pn.Row(self.assignment, pn.Column(self.fault, self.text, self.write_button)),
-            title="Runs and channels", collapsed=True, min_width=1200,
+            title="Runs and channels", collapsed=True, min_width=1260,
         )  # fmt: skip
         #: folders whose measurement.toml is a draft of the page: further records go into it
         self._drafts: set[str] = set()
