@@ -113,6 +113,9 @@ class StabilityTab:
             session.set_values([*gone, ("structure.frf", names)])
         except InputError as error:
             self.work.show_message(str(error))
+        else:
+            self.work.show_message(f"{', '.join(sorted(files))}: in place of the modes of the "
+                                   "case, which is not saved yet")  # fmt: skip
 
     def study(self, name: str) -> None:
         """Compute the optimum or the uncertainty of the case and draw it into the diagram."""
@@ -151,6 +154,8 @@ class StabilityTab:
             self.beside.computations.end()
         self.beside, self._beside.objects = None, []
         name = self.other.value
+        if self.diagram is not None:
+            self.diagram.make_room(name not in (None, _NONE))
         if self.diagram is None or name in (None, _NONE):
             return
         try:

@@ -16,6 +16,7 @@ from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.curves_in_frame import CLIPPED, FAST, keep_in_frame
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE, table_buttons
 from chatter.app.workbench.session import without_folder
@@ -29,7 +30,7 @@ _STEPS = 400
 #: s after the last move of a slider until the fine diagram is begun: it would hold up the next move
 _REST = 0.15
 #: pixels
-_WIDTH, _WIDTH_BESIDE = 820, 620
+_WIDTH, _WIDTH_BESIDE = 820, 560
 #: the handle goes to where it is put without gliding there: each frame of that would be painted
 _AT_ONCE = ".noUi-state-tap .noUi-connect, .noUi-state-tap .noUi-origin {transition: none}"
 #: height of the mark of a cut above the diagram, in that of the diagram
@@ -38,6 +39,8 @@ _DOUBT = (
     "operating point: stability is not certain, as linear methods leave out what may decide it; "
     "a click on the point simulates it",
 )
+#: columns of what is drawn, along each axis
+_ALONG_X, _ALONG_Y = ("speed", "left", "right"), ("depth", "stable", "low", "high")
 _HEADING = ("spindle_speed [rpm]", "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation")
 
 
@@ -94,6 +97,7 @@ class StabilityView:
         # nothing is simulated before the first click
         self._motion_picture = picture(self._motion, "motion")
         self._motion_picture.visible = False
+        self.make_room(beside is not None)
         for widget in self.sliders.values():
             widget.param.watch(lambda _: self.draw(), "value")
         self.draw()
@@ -119,6 +123,14 @@ class StabilityView:
             self._motion_picture,
         )
         return pn.Row(pn.Column(*cards), pictures)
+
+    def make_room(self, is_beside: bool) -> None:
+        """Leave room for a diagram beside this one, or take it back."""
+        width = _WIDTH_BESIDE if is_beside else _WIDTH
+        for drawn in (self._lobes, self._motion):
+            drawn.width = width
+        for told in (self.message, self.same_call, self.verdict):
+            told.param.update(width=width, min_width=width)
 
     def diagram_alone(self) -> pn.viewable.Viewable:
         """Return the diagram without its sliders, as it stands beside another."""
@@ -299,28 +311,30 @@ class StabilityView:
             tools="pan,wheel_zoom,box_zoom,reset,save",
         )  # fmt: skip
         drawn.xaxis.axis_label, drawn.yaxis.axis_label = "spindle speed [rpm]", "axial depth [mm]"
+        # the one beside has the axes of the other, whatever its limits are
+        level = FAST if of_other is None else CLIPPED
         drawn.varea(
             "speed", 0.0, "stable", source=self.limit, color="#9ccc9c", fill_alpha=0.45,
-            level="overlay", legend_label="stable",
+            level=level, legend_label="stable",
         )  # fmt: skip
         drawn.quad("left", "right", "high", "low", source=self.regained, color="#9ccc9c",
-                   line_color=None, fill_alpha=0.45, level="overlay")  # fmt: skip
+                   line_color=None, fill_alpha=0.45, level=level)  # fmt: skip
         drawn.scatter("speed", "depth", source=self.further, size=3, color="#1f3b57",
-                      level="overlay")  # fmt: skip
+                      level=level)  # fmt: skip
         drawn.varea("speed", "low", "high", source=self.band, color="#E69F00", fill_alpha=0.35,
-                    level="overlay", legend_label="5 to 95 %")  # fmt: skip
+                    level=level, legend_label="5 to 95 %")  # fmt: skip
         line = drawn.line("speed", "depth", source=self.limit, line_width=2, color="#1f3b57",
-                          level="overlay", legend_label="critical axial depth")  # fmt: skip
+                          level=level, legend_label="critical axial depth")  # fmt: skip
         drawn.scatter(
             "speed", "depth", source=self.operating, size=11, color="colour", marker="marker",
-            level="overlay", legend_label="operating point",
+            level=level, legend_label="operating point",
         )  # fmt: skip
         pockets = drawn.scatter(
             "speed", "depth", source=self.pockets, size=10, marker="triangle", color="#0072B2",
-            level="overlay", legend_label="pockets",
+            level=level, legend_label="pockets",
         )  # fmt: skip
         drawn.scatter("speed", "depth", source=self.optimum, size=16, marker="star",
-                      color="#D55E00", level="overlay", legend_label="optimum")  # fmt: skip
+                      color="#D55E00", level=level, legend_label="optimum")  # fmt: skip
         told = [
             ("spindle speed", "@speed{0} rpm"),
             ("critical axial depth", "@depth{0.000} mm"),
@@ -339,6 +353,8 @@ class StabilityView:
         legend_above(drawn)
         for item in drawn.legend[0].items:
             item.visible = False  # until there is something to draw
+        if of_other is None:
+            keep_in_frame(drawn, _ALONG_X, _ALONG_Y)
         drawn.on_event(Tap, lambda event: self.simulate(event.x, event.y))
         return drawn
 

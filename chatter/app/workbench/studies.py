@@ -110,7 +110,7 @@ STUDIES = {
     ),
 }  # fmt: skip
 #: name of an option in Python -> of the command line
-_OPTION_NAMES = {"count": "samples"}
+OPTION_NAMES = {"count": "samples"}
 
 
 def same_call(name: str, file: str, options: Mapping[str, Any]) -> dict[str, str]:
@@ -119,7 +119,7 @@ def same_call(name: str, file: str, options: Mapping[str, Any]) -> dict[str, str
     for key, value in options.items():
         if value in ("", None, False):
             continue
-        option = f"--{_OPTION_NAMES.get(key, key)}"
+        option = f"--{OPTION_NAMES.get(key, key)}"
         lines = str(value).splitlines() if key == "vary" else [str(value)]
         words += [option] if value is True else [part for one in lines for part in (option, one)]
     given = {key: value for key, value in options.items() if value not in ("", None, False)}

@@ -10,7 +10,7 @@ import panel as pn
 from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session
-from chatter.app.workbench.studies import STUDIES, run_study
+from chatter.app.workbench.studies import OPTION_NAMES, STUDIES, run_study
 from chatter.app.workbench.studies import same_call as call_of
 from chatter.description.errors import InputError
 
@@ -89,7 +89,7 @@ class StudiesView:
 
 
 def _widget(name: str, value: Any) -> Any:
-    label = name.replace("_", " ")
+    label = OPTION_NAMES.get(name, name).replace("_", " ")
     if name == "result":
         return pn.widgets.Select(label=label, options=list(_RESULTS_OF_WHATIF), width=160)
     if isinstance(value, bool):

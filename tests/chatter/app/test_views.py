@@ -329,6 +329,7 @@ def test_frfs_take_the_place_of_the_modes(workbench, tmp_path):
     lines = ["frequency [Hz],real [m/N],imag [m/N]"]
     lines += [f"{f},{v.real},{v.imag}" for f, v in zip(frequency, values, strict=True)]
     workbench.stability.take_frfs({"tip.csv": "\n".join(lines).encode()})
+    assert workbench.stability.message.object.startswith("tip.csv: in place of the modes")
     assert "tip.csv" in workbench.session.text
     assert "structure.mode" not in workbench.session.text
 
