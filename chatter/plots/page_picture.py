@@ -22,7 +22,7 @@ def drawn_again(figure: Any) -> Figure:
     axes.set_xscale(_scale(figure.x_scale))
     axes.set_yscale(_scale(figure.y_scale))
     legend = figure.legend[0].items if figure.legend else []
-    labels = {one.id: item.label.value for item in legend for one in item.renderers}
+    labels = {one.id: item.label.value for item in legend if item.visible for one in item.renderers}
     for renderer in figure.renderers:
         draw = _GLYPHS.get(type(renderer.glyph).__name__)
         if renderer.visible and draw is not None:

@@ -7,14 +7,19 @@ from typing import Any
 
 import panel as pn
 
+from chatter.app.sliders import case_sliders
 from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import OPTION_NAMES, STUDIES, run_study
 from chatter.app.workbench.studies import same_call as call_of
+from chatter.description.case import Case
 from chatter.description.errors import InputError
 
 _RESULTS_OF_WHATIF = ("", "lobes", "critical depth", "forces", "surface", "frf")
+
+#: option of a study that names the values that vary, and how far each does at first
+_VARY, _SHARE = "vary", "+-20%"
 
 
 class StudiesView:
@@ -39,10 +44,14 @@ class StudiesView:
         self.work = LongWork(session.root, show)
         self.call = pn.Column()
         self.options: dict[str, Any] = {}
+        #: values of the open case by their words, which a choice adds to those that vary
+        self.varied = pn.widgets.Select(label="add a value that varies", options=[""], width=260)
+        self.varied.param.watch(lambda event: self._vary(event.new), "value")
         self._option_row, self._result = pn.FlexBox(min_width=860), pn.Column()
         self.start_button.on_click(lambda _: self.start())
         self.choice.param.watch(lambda _: self._chosen(), "value")
         session.watch(self._show_results)
+        session.watch(self._offer_values)
         self._chosen()
 
     def __panel__(self) -> pn.viewable.Viewable:
@@ -76,8 +85,28 @@ class StudiesView:
         for widget in self.options.values():
             widget.param.watch(lambda _: self._show_call(), "value")
         self._option_row.objects = [pn.pane.Str(study.description, width=880),
-                                    *self.options.values()]  # fmt: skip
+                                    *self._pickers(), *self.options.values()]  # fmt: skip
+        self._offer_values()
         self._show_results()
+
+    def _pickers(self) -> list[Any]:
+        return [self.varied] if _VARY in self.options else []
+
+    def _offer_values(self) -> None:
+        """Offer the values of the open case that can be larger and smaller."""
+        case = self._session.case
+        found = values_that_vary(case) if case is not None and _VARY in self.options else {}
+        self.varied.options = {"": "", **found}
+
+    def _vary(self, path: str) -> None:
+        """Add a line for a value; it stands there to be changed."""
+        if not path or _VARY not in self.options:
+            return
+        widget = self.options[_VARY]
+        lines = [one for one in widget.value.splitlines() if one.strip()]
+        if not any(one.startswith(f"{path}=") for one in lines):
+            widget.value = "\n".join([*lines, f"{path}={_SHARE}"])
+        self.varied.value = ""
 
     def _show_call(self) -> None:
         file = self._session.name or "case.toml"
@@ -86,6 +115,20 @@ class StudiesView:
     def _show_results(self) -> None:
         self._show_call()
         self._result.objects = result_panel(self._session.results(self.choice.value))
+
+
+def values_that_vary(case: Case) -> dict[str, str]:
+    """Paths of the values of a case that a slider moves and that are no counts, by their words.
+
+    None where the case lacks a tool, a material, a cut or a structure.
+    """
+    if None in (case.tool, case.material, case.cut, case.structure):
+        return {}
+    return {
+        f"{one.group}: {one.label}": one.path
+        for one in case_sliders(case)
+        if one.value and not one.whole
+    }
 
 
 def _widget(name: str, value: Any) -> Any:

@@ -19,6 +19,7 @@ from chatter.app.workbench.session import LARGEST_FILE, Session
 from chatter.app.workbench.table_files import PageTable, as_xlsx, table_of
 from chatter.app.workbench.upload import dropper
 from chatter.description.errors import InputError, RunError
+from chatter.plots.page_picture import drawn_again
 from tests.chatter.app.crash import ends_at_once
 from tests.chatter.studies.test_modal_test import write_set
 from tests.dynamics.frf.hammer.hammer_records import CLOSE
@@ -348,6 +349,23 @@ def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
     again.end()
 
 
+def test_a_value_that_varies_is_chosen_by_its_words(workbench):
+    view = workbench.studies
+    view.choice.value = "whatif"
+    view.options["vary"].value = ""
+    offered = view.varied.options
+    assert offered["Cut: radial depth"] == "cut.radial_depth"
+    assert "Tool: teeth" not in offered  # 20 % more of them are none
+    for words in ("Cut: radial depth", "Material: Ktc", "Cut: radial depth"):
+        view.varied.value = offered[words]
+    assert view.options["vary"].value.splitlines() == [
+        "cut.radial_depth=+-20%", "material.Ktc=+-20%"
+    ]  # fmt: skip
+    view.varied.value = ""
+    view.choice.value = "optimum"
+    assert view.varied not in list(view._option_row.objects)
+
+
 @pytest.mark.nightly
 def test_a_study_is_cancelled_and_goes_on(workbench, tmp_path):
     text = (tmp_path / "case.toml").read_text().replace('"600 MPa"', '"600 +- 30 MPa"')
@@ -431,6 +449,10 @@ def test_pictures_and_tables_are_exported(workbench):
     assert diagram.computations.wait(PATIENCE)
     assert picture_file(diagram._lobes, "png").read(8) == b"\x89PNG\r\n\x1a\n"
     assert b"<svg" in picture_file(diagram._lobes, "svg").read(2000)
+    (axes,) = drawn_again(diagram._lobes).axes
+    named = {one.get_text() for one in axes.get_legend().get_texts()}
+    assert "critical axial depth" in named
+    assert "5 to 95 %" not in named  # nothing is uncertain, and no band is drawn
     book = openpyxl.load_workbook(as_xlsx(diagram.limits()))
     assert book.active["A1"].value == "spindle_speed [rpm]"
     assert book.active.max_row == 1 + len(diagram.limit.data["speed"])
