@@ -25,6 +25,8 @@ from chatter.explain.measurement_file import read_measurement
 
 _FOLDER, _FILE, _UPDATED = "measurements", "measurement.toml", "case-updated.toml"
 _CASE = "case.toml"
+#: s after a file in which another may be of the same drop
+_LATE = 15.0
 _OPEN_CASE = "the open case"
 _DECLARED = "the one that it names"
 
@@ -53,6 +55,7 @@ class MeasurementView:
         self.upload.begun = self._drop_begins
         #: folder that the files of a drop go to, whatever is begun while they come
         self._dropped_into: str | None = None
+        self._proposed = ""  # name of the new folder that nobody typed
         self.folder = pn.widgets.Select(label="Measurement", options=[], width=300)
         self.case = pn.widgets.Select(label="Case", options=[_DECLARED, _OPEN_CASE], width=200)
         self.compare_button = pn.widgets.Button(label="Compare", color="primary")
@@ -134,8 +137,16 @@ class MeasurementView:
         """Folder of what is dropped next."""
         return f"{_FOLDER}/{self.name.value.strip()}"
 
-    def _drop_begins(self) -> None:
-        self._dropped_into = self._new_folder()
+    def _drop_begins(self, file: str) -> None:
+        """Files go into the new folder, late ones of a drop to the others of it.
+
+        A busy page pauses between two files; whoever drops another set gives it a name, waits, or
+        has a file of a name that is there already.
+        """
+        before, named = self._dropped_into, self.name.value != self._proposed
+        late = before is not None and not named and self.upload.pause() < _LATE
+        if not (late and not self._session.path(f"{before}/{file}").exists()):
+            self._dropped_into = self._new_folder()
 
     def _draft(self, folder: str) -> None:
         """Write a first measurement.toml: files come one by one, and each is a run."""
@@ -210,6 +221,7 @@ class MeasurementView:
                 name for name in (f"set-{k}" for k in range(1, len(taken) + 2))
                 if f"{_FOLDER}/{name}" not in taken
             )  # fmt: skip
+            self._proposed = self.name.value
 
     def accept(self) -> None:
         """Take the repaired case into the folder as a case of its own, and open it."""

@@ -151,7 +151,7 @@ class TapTestView:
         self.records, self.test = {}, None
         self.fit()
 
-    def _drop_begins(self) -> None:
+    def _drop_begins(self, _: str) -> None:
         self._dropped_into = self._folder_name()
 
     def open_folder(self) -> None:

@@ -24,8 +24,12 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
         super().__init__(**given)
         self._forgotten: dict[str, Any] = {}
         self._last_part = -_PAUSE
-        #: called as the first file of a drop begins to come
-        self.begun: Callable[[], None] = lambda: None
+        #: called with the name of the first file of a drop as it begins to come
+        self.begun: Callable[[str], None] = lambda _: None
+
+    def pause(self) -> float:
+        """Time since the last part of a file came, s."""
+        return time.monotonic() - self._last_part
 
     def forget(self) -> None:
         """Hand over what stands in the list now no more; a file that is dropped again is new."""
@@ -47,8 +51,8 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
             return
         if data.get("chunk") != 1 and name not in self._file_buffer:
             return  # rest of a file that was given up
-        if not self._file_buffer and time.monotonic() - self._last_part > _PAUSE:
-            self.begun()
+        if not self._file_buffer and self.pause() > _PAUSE:
+            self.begun(name)
         self._take_part(event, name, part)
         self._last_part = time.monotonic()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import time
 from types import SimpleNamespace
 
 import numpy as np
@@ -194,21 +195,36 @@ def test_what_is_shown_is_compared_with_the_open_case_beside_the_folder(workbenc
 def test_files_of_one_drop_stay_together_when_work_begins_meanwhile(workbench, tmp_path):
     """The later ones went into the folder that was proposed for what is dropped next."""
     view = workbench.measurement
-    view.upload.begun()
+    view.upload.begun("run01.csv")
     view.take({"run01.csv": record("F1")})
     view.start("compare")
     assert view.work.computations.wait(PATIENCE)
     assert view.name.value == "set-2"
+    view.upload._last_part = time.monotonic() - 5.0  # a busy page pauses
+    view.upload.begun("run02.csv")
     view.take({"run02.csv": record("F1")})
     folder = tmp_path / "measurements" / "set-1"
     written = tomlkit.parse((folder / "measurement.toml").read_text())
     assert [run["file"] for run in written["run"]] == ["run01.csv", "run02.csv"]
     # the next drop is of the folder that is named now, and begins anew
     view.assignment.kind.value = "axis"
-    view.upload.begun()
+    view.upload._last_part -= 60.0
+    view.upload.begun("run03.csv")
     view.take({"run03.csv": record("F1")})
     written = tomlkit.parse((tmp_path / "measurements/set-2/measurement.toml").read_text())
     assert (written["kind"], [run["file"] for run in written["run"]]) == ("milling", ["run03.csv"])
+    # a file of a name that is there already is of another set, and so is one under a typed name
+    view.start("compare")
+    view.upload._last_part = time.monotonic() - 5.0
+    view.upload.begun("run03.csv")
+    view.take({"run03.csv": record("F2")})
+    view.name.value = "typed"
+    view.upload.begun("run04.csv")
+    view.take({"run04.csv": record("F2")})
+    measured = tmp_path / "measurements"
+    assert "F1" in (measured / "set-2" / "run03.csv").read_text()
+    assert "F2" in (measured / "set-3" / "run03.csv").read_text()
+    assert (measured / "typed" / "run04.csv").is_file()
 
 
 def test_judged_cuts_are_a_table_of_their_case(workbench, tmp_path):
