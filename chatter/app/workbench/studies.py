@@ -207,6 +207,8 @@ _ERRORS = {
     "holdout_after": "the same with the effects",
     "noise_floor": "of noise alone",
 }
+#: those that are the same as without where no effect was found
+_WITH_EFFECTS = ("after", "holdout_after")
 
 
 def explanation_in_words(summary: Mapping[str, Any]) -> list[str]:
@@ -222,7 +224,8 @@ def explanation_in_words(summary: Mapping[str, Any]) -> list[str]:
     found += [f"may explain a part, not added: {', '.join(partial)}"] if partial else []
     error = summary.get("error") or {}
     told = [f"{words} {100.0 * error[key]:.3g} %" for key, words in _ERRORS.items()
-            if isinstance(error.get(key), float)]  # fmt: skip
+            if isinstance(error.get(key), float)
+            and (summary.get("effects") or key not in _WITH_EFFECTS)]  # fmt: skip
     found += [f"error of the prediction over the signal: {', '.join(told)}"] if told else []
     if summary.get("next_measurement"):
         found.append(next_in_words(summary["next_measurement"]))

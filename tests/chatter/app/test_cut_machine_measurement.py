@@ -333,3 +333,10 @@ def test_an_explanation_is_told_in_the_units_of_people():
         "error of the prediction over the signal: of the declared case 64.5 %, refitted 45.3 %, "
         "with the effects 4.31 %",
     ]
+
+
+def test_an_explanation_without_effects_has_no_errors_with_them():
+    error = {"declared": 0.104, "before": 0.0319, "after": 0.0319, "noise_floor": 0.0327}
+    _, told = explanation_in_words({"verdict": "nothing-missing", "effects": [], "error": error})
+    assert told == ("error of the prediction over the signal: of the declared case 10.4 %, "
+                    "refitted 3.19 %, of noise alone 3.27 %")  # fmt: skip
