@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,11 +59,20 @@ def plot_frf(result: FrfResult) -> Figure:
     if any(curve.tested is not None for curve in result.curves):
         for name, dashes in (("linearised", "-"), ("test in time", ":")):
             lines += axes[0].plot([], [], color="black", ls=dashes, label=name)
-    # below the panels: there are curves everywhere in them, and the title is above
-    figure.legend(handles=lines, loc="outside lower center", ncols=3, fontsize=8.0, frameon=False)
+    _put_legend_below(figure, lines)
     for each in axes:
         style.finish(each)
     return figure
+
+
+def _put_legend_below(figure: Figure, lines: Sequence[Line2D]) -> None:
+    """Legend below the panels, which have curves everywhere, in the columns that find room."""
+    look: dict[str, Any] = {"loc": "outside lower center", "fontsize": 8.0, "frameon": False}
+    for columns in (3, 2, 1):
+        legend = figure.legend(handles=lines, ncols=columns, **look)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def _is_incoherent(result: FrfResult) -> bool:

@@ -169,6 +169,26 @@ def test_frfs_of_two_units_have_a_panel_each():
     assert lines["receptance [urad/(N*m)]"] == ["motor"]
 
 
+def test_every_word_of_a_long_legend_is_in_the_picture():
+    """States of a machine in words, in three columns, were wider than the picture."""
+    from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
+    from dynamics.frf.container import Frf
+
+    frequency = np.linspace(10.0, 500.0, 200)
+    one = Frf(frequency, 1e-7 / (1.0 - (frequency / 200.0) ** 2 + 0.05j))
+    state = "X: brake, Y: brake, Z: brake, X at 885 mm, Y at 327 mm, Z at 0 mm, no friction"
+    for words, columns in ((state, 1), (state[:44], 2), (state[:8], 3)):
+        curves = [FrfCurve(f"curve {number}", words, one) for number in range(6)]
+        figure = plot_frf(FrfResult("machine", curves))
+        figure.canvas.draw()
+        (legend,) = figure.legends
+        shown = [text.get_window_extent() for text in legend.get_texts()]
+        assert len(shown) == 6
+        assert min(one.x0 for one in shown) >= 0.0
+        assert max(one.x1 for one in shown) <= figure.bbox.width
+        assert len({round(one.x0) for one in shown}) == columns
+
+
 def test_limits_go_on_where_stable_intervals_come_or_go_beside_them():
     """A pale strip at one speed, without a curve along it: an island that opens there."""
     before, after = np.array([0.67]), np.array([0.29, 0.51, 0.71])
