@@ -71,7 +71,8 @@ def _draw_efforts(panel: Axes, result: MoveResult) -> None:
         if unit not in panels:
             panels[unit] = panel.twinx() if panels else panel
             panels[unit].set_ylabel(f"{_EFFORTS.get(unit, 'effort')} of the motors [{unit}]")
-            panels[unit].spines["top"].set_visible(False)
+            if panels[unit] is not panel:
+                style.finish_at_right(panels[unit])
         panels[unit].plot(result.time, result.effort[:, index], color=_colour(index), lw=0.8)
         panel.plot([], [], color=_colour(index), lw=0.8, label=f"{axis} [{unit}]")
     if len(panels) > 1:

@@ -85,6 +85,13 @@ def power_of_ten(value: float) -> str:
     return "10" + str(exponent).translate(_RAISED)
 
 
+def finish_at_right(axes: Any) -> None:
+    """Give a second axis, at the right of axes with the common look, that look; they have a grid."""
+    axes.tick_params(labelsize=_FONT)
+    axes.spines["top"].set_visible(False)
+    axes.yaxis.label.set_fontsize(_FONT + 1.0)
+
+
 def finish(axes: Any) -> None:
     """Give axes the common look."""
     axes.grid(visible=True, color="#DDDDDD", linewidth=0.6)
