@@ -14,11 +14,14 @@ from tests.chatter.assembly.test_assemble import ASSEMBLY
 from tests.chatter.cutting_coefficients.test_coefficients import UP_CUT, records, waveform
 from tests.chatter.detection.made_recordings import RATE
 from tests.chatter.drive_friction.test_identified_friction import stroke
+from tests.chatter.io.formats.test_compressed_sound import encode
 from tests.chatter.monitoring.test_detect import made
 from tests.places import EXAMPLES, ROOT
 
 #: of the case of few speeds: studies are quick
 _FEW = "5000..25000 rpm:40"
+#: Hz
+_RATE_OF_TELEPHONES = 48000
 
 
 def case(name="case.toml"):
@@ -69,6 +72,7 @@ def recordings():
     time, values = made()
     loud = (values / np.abs(values).max() * 2**15 * 0.9).astype(np.int16)
     scipy.io.wavfile.write("cut.wav", round(RATE), loud)
+    encode("recording.m4a", [loud / 2**15], "aac", rate=_RATE_OF_TELEPHONES)
     np.savetxt("cut.csv", np.c_[time, values], delimiter=",", header="time [s],a [m/s^2]",
                comments="")  # fmt: skip
     np.savetxt("forces.csv", np.c_[values, values], delimiter=",", header="Fx [N],Fy [N]",

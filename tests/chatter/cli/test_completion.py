@@ -69,5 +69,6 @@ def test_commands_options_values_and_files(shell):
 
 
 def test_it_installs_itself_for_the_next_shell(shell):
-    shell("chatter --install-completion bash")
+    # with one command alone bash would give way to it, and whose shell it is would not be seen
+    shell("chatter --install-completion bash; exit $?")
     assert shell('. "$HOME/.bashrc"; complete -p chatter')[-1].endswith("chatter")

@@ -286,7 +286,7 @@ def test_places_that_hold_no_file(tmp_path):
         load(tmp_path)
     with pytest.raises(InputError, match="cannot be read"):
         load(tmp_path / ("x" * 5000))
-    with pytest.raises(InputError, match="is not a file name"):
+    with pytest.raises(InputError, match="the path of a case file is required"):
         load("a\0b")
     if Path("/dev/zero").exists():
         with pytest.raises(InputError, match="binary"):

@@ -132,7 +132,7 @@ def test_tests_that_cannot_be_used_are_refused(tmp_path, text, message):
     ("options", "message"),
     [
         ({"aim": "fun"}, "none of information, metal"),
-        ({"risk": 0.0}, "--risk 0: a probability"),
+        ({"risk": 0.0}, "--risk 0.0: a probability"),
         ({"particles": 3}, "--particles 3: a number from 32"),
     ],
 )

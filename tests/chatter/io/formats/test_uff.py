@@ -16,6 +16,7 @@ BEAM = DATA / "frf-beam"
 
 VALUES = np.array([1.5 - 2.5j, -3.25 + 0.5j, 4.0 + 8.0j, 0.125 - 1e-3j, 2e-5 + 0j])
 START, STEP = 10.0, 2.5
+TIME_STEP = 2.5e-3
 FREQUENCY = START + STEP * np.arange(VALUES.size)
 
 
@@ -33,13 +34,14 @@ def heading(
     abscissa=(18,),
     numerator=(12,),
     denominator=(13,),
+    step=STEP,
 ):
     return [
         *["test", "NONE", "NONE", "NONE", "NONE"],
         f"{function:5d}{0:10d}{0:5d}{0:10d} {'NONE':<10s}{response[0]:10d}{response[1]:4d}"
         f" {'NONE':<10s}{reference[0]:10d}{reference[1]:4d}",
         f"{kind:10d}{count:10d}{int(even):10d}{START if even else 0:13.5E}"
-        f"{STEP if even else 0:13.5E}{0:13.5E}",
+        f"{step if even else 0:13.5E}{0:13.5E}",
         axis(*abscissa),
         axis(*numerator),
         axis(*denominator),
@@ -339,10 +341,11 @@ def test_headings_that_are_no_ascii(tmp_path, encoding, numerator, denominator, 
 def test_sounds_and_voltages_are_time_records(tmp_path, unit, quantity):
     pressure = np.sin(np.arange(400.0))
     fields = {"kind": 4, "function": 1, "abscissa": (17, "(Sec)"), "denominator": (0,)}
+    fields["step"] = TIME_STEP
     dataset = text_dataset(pressure, numerator=(15 if unit == "Pa" else 0, unit), **fields)
     path = write(tmp_path, dataset)
     recording = read_recording(path)
-    assert recording.time_step == pytest.approx(STEP)
+    assert recording.time_step == pytest.approx(TIME_STEP)
     assert recording.quantities == (quantity or "acceleration",)
     np.testing.assert_allclose(recording.values[:, 0], pressure, atol=1e-10)
 
@@ -358,13 +361,14 @@ def test_a_time_record_of_an_unknown_unit_or_another_than_its_type_is_refused(tm
 def test_numbers_without_blanks_between_them_and_records_of_rotations(tmp_path):
     """Fields of 13 columns, as the standard has them: a sign may stand right behind a number."""
     values = -np.linspace(1.0, 2.0, 300)
-    lines = heading(2, values.size, True, 1, abscissa=(17,), denominator=(0,))
+    fields = {"abscissa": (17,), "denominator": (0,), "step": TIME_STEP}
+    lines = heading(2, values.size, True, 1, **fields)
     rows = ["".join(f"{one:13.6E}" for one in values[k : k + 6]) for k in range(0, 300, 6)]
     assert "E+00-" in rows[0]
     text = "\n".join(["    -1", "    58", *lines, *rows, "    -1", ""])
     path = write(tmp_path, text.encode())
     np.testing.assert_allclose(read_recording(path).values[:, 0], values, atol=1e-6)
-    lines = heading(2, values.size, True, 1, (7, 6), abscissa=(17,), denominator=(0,))
+    lines = heading(2, values.size, True, 1, (7, 6), **fields)
     text = "\n".join(["    -1", "    58", *lines, *rows, "    -1", ""])
     with pytest.raises(InputError, match="time response of a rotation"):
         read_recording(write(tmp_path, text.encode()))
