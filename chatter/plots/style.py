@@ -86,7 +86,7 @@ def power_of_ten(value: float) -> str:
 
 
 def finish_at_right(axes: Any) -> None:
-    """Give a second axis, at the right of axes with the common look, that look; they have a grid."""
+    """Give a second axis, at the right of axes with a grid, the common look."""
     axes.tick_params(labelsize=_FONT)
     axes.spines["top"].set_visible(False)
     axes.yaxis.label.set_fontsize(_FONT + 1.0)
