@@ -23,7 +23,6 @@ from tests.chatter.app.conftest import serving
 from tests.chatter.app.test_workbench import answer, opened_socket, prefix
 from tests.places import EXAMPLES
 
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 PATIENCE = 60.0
 
 
@@ -50,6 +49,13 @@ async def reply(page, kind):
     return False
 
 
+async def hang_up(page):
+    """Close a socket and wait for its end: the loop that ends first would leave it open."""
+    page.close()
+    while await page.read_message() is not None:
+        pass
+
+
 def conversation(server, hostile):
     """Open a page and another socket that is hostile; the first must still answer after it."""
 
@@ -60,10 +66,10 @@ def conversation(server, hostile):
         try:
             await hostile(other)
         finally:
-            other.close()
+            await hang_up(other)
         await send(page, "PULL-DOC-REQ", {})
         lives = await reply(page, "PULL-DOC-REPLY")
-        page.close()
+        await hang_up(page)
         return lives
 
     assert asyncio.run(asyncio.wait_for(run(), PATIENCE))
@@ -150,7 +156,9 @@ def test_a_session_without_a_token_of_this_server_is_refused(server, token):
         page = await websocket_connect(
             HTTPRequest(url, headers=origin), subprotocols=["bokeh", token]
         )
-        return await page.read_message()
+        told = await page.read_message()
+        page.close()
+        return told
 
     try:
         told = asyncio.run(asyncio.wait_for(connect(), PATIENCE))
