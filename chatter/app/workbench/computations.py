@@ -20,6 +20,8 @@ class Computation(NamedTuple):
     may_be_superseded: bool
     #: s for which nothing newer may come before it is begun: a slider that moves has come to rest
     rest: float = 0.0
+    #: what is said once the user has given it up
+    when_cancelled: str = "cancelled"
 
 
 class Computations:
@@ -103,7 +105,7 @@ class Computations:
             step.run(go_on)
         except SupersededError:
             if self._cancelled:
-                self._report("cancelled")
+                self._report(step.when_cancelled)
         except (InputError, RunError) as error:
             self._report(str(error))
         except Exception as error:  # whatever fails, the page lives on

@@ -14,6 +14,8 @@ from bokeh.transform import dodge
 from chatter.app.workbench.picture_files import legend_above
 from chatter.plots import style
 
+#: colours of a model's residual, in every picture of them
+MODEL_COLOURS = {"declared": style.RED, "refitted": style.RED, "repaired": style.BLUE}
 _COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.GREY, "#56B4E9")
 _CLASS_COLOURS = (style.GREEN, style.GREY, style.BLUE, style.RED)
 #: from violet over white to orange
@@ -63,7 +65,7 @@ def _bars(panel: dict[str, Any]) -> Any:
         at = (number - 0.5 * (len(panel["series"]) - 1)) * width
         drawn.vbar(
             dodge("category", at, range=drawn.x_range), top=name, width=0.9 * width, source=source,
-            color=_COLOURS[number % len(_COLOURS)], legend_label=name,
+            color=MODEL_COLOURS.get(name, _COLOURS[number % len(_COLOURS)]), legend_label=name,
         )  # fmt: skip
     drawn.xaxis.major_label_orientation = 0.6 if len(categories) > 5 else "horizontal"
     _floor(drawn, panel)

@@ -41,6 +41,7 @@ class LongWork:
         arguments: tuple[Any, ...],
         done: Callable[[], None],
         note: str = "",
+        when_cancelled: str = "cancelled",
     ) -> None:
         """Start a function; `done` changes the page after it, `note` is what is said then."""
 
@@ -54,7 +55,7 @@ class LongWork:
             self._show(done)
 
         self.show_message("starting ...")
-        self.computations.start(Computation(compute, False))
+        self.computations.start(Computation(compute, False, when_cancelled=when_cancelled))
 
     def report(self, stage: str, share: float) -> None:
         """Show what is done, and the share of it."""

@@ -12,6 +12,7 @@ import panel as pn
 
 from chatter.app.workbench.channel_assignment import ChannelAssignment
 from chatter.app.workbench.long_work import LongWork
+from chatter.app.workbench.repaired_case import UPDATED, why_no_repaired_case
 from chatter.app.workbench.residual_file import RESIDUALS
 from chatter.app.workbench.residual_view import ResidualView
 from chatter.app.workbench.result_panel import result_panel, same_call
@@ -23,10 +24,16 @@ from chatter.description.case import load
 from chatter.description.errors import InputError
 from chatter.explain.measurement_file import read_measurement
 
-_FOLDER, _FILE, _UPDATED = "measurements", "measurement.toml", "case-updated.toml"
+_FOLDER, _FILE = "measurements", "measurement.toml"
 _CASE = "case.toml"
 #: s after a file in which another may be of the same drop
 _LATE = 15.0
+#: what is said of work that was cancelled: an explanation keeps the predictions that it has made
+_CANCELLED = {
+    "compare": "cancelled",
+    "explain": "cancelled; Explain goes on from the predictions made so far, if the records and "
+    "the case stay the same",
+}
 _OPEN_CASE = "the open case"
 _DECLARED = "the one that it names"
 
@@ -62,6 +69,8 @@ class MeasurementView:
         self.explain_button = pn.widgets.Button(label="Explain", color="primary")
         self.accept_button = pn.widgets.Button(label="Accept the repaired case", disabled=True)
         self.accepted_name = pn.widgets.TextInput(label="as", value="repaired.toml", width=200)
+        #: why there is nothing to accept
+        self.none_to_accept = wrapped_text()
         self.text = pn.widgets.TextAreaInput(
             label=_FILE, width=500, height=330, max_length=200_000,
             stylesheets=["textarea {font-family: monospace; font-size: 12.5px; white-space: pre}"],
@@ -101,6 +110,7 @@ class MeasurementView:
             self.work.message,
             self.call,
             pn.Row(self.accept_button, self.accepted_name),
+            self.none_to_accept,
             self.residuals,
             self._result,
         )  # fmt: skip
@@ -206,7 +216,7 @@ class MeasurementView:
         self.call.objects = [same_call(call)]
         path = self._session.path(self.folder.value)
         arguments = (name, path, case, call, self._results(name))
-        self.work.start(run_measurement, arguments, self._show)
+        self.work.start(run_measurement, arguments, self._show, when_cancelled=_CANCELLED[name])
 
     def _write_text(self, folder: str) -> None:
         path = self._session.path(f"{folder}/{_FILE}")
@@ -225,10 +235,12 @@ class MeasurementView:
 
     def accept(self) -> None:
         """Take the repaired case into the folder as a case of its own, and open it."""
-        session = self._session
+        session, results = self._session, self._results("explain")
+        if why_no_repaired_case(results):  # as it stands on the page
+            return
         try:
             target = session.new_path(self.accepted_name.value.strip())
-            load(self._results("explain") / _UPDATED).save(target)
+            load(results / UPDATED).save(target)
         except InputError as error:
             self.work.show_message(str(error))
             return
@@ -259,7 +271,14 @@ class MeasurementView:
         self._show_calls()
         done = [self._results(name) for name in ("explain", "compare")]
         self.residuals.show(max(done, key=_last_written))
-        self.accept_button.disabled = not (self._results("explain") / _UPDATED).is_file()
+        self._offer_to_accept()
+
+    def _offer_to_accept(self) -> None:
+        """Offer the repaired case where there is one, or say why there is none."""
+        why_not = why_no_repaired_case(self._results("explain"))
+        self.none_to_accept.object = why_not
+        self.none_to_accept.visible = bool(why_not)
+        self.accept_button.disabled = self.accepted_name.disabled = bool(why_not)
 
     def _show_calls(self) -> None:
         """Show what gives the same as each button."""

@@ -10,15 +10,12 @@ import panel as pn
 from bokeh.models import ColumnDataSource, HoverTool
 from bokeh.plotting import figure
 
-from chatter.app.workbench.diagnostic_figure import diagnostic_figure
+from chatter.app.workbench.diagnostic_figure import MODEL_COLOURS, diagnostic_figure
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.residual_file import read_residuals
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.explain.residuals.by_channel import short_name
-from chatter.plots import style
 
-#: colours of a model's residual
-_COLOURS = {"declared": style.RED, "refitted": style.RED, "repaired": style.BLUE}
 _MOST_RUNS = 12
 _RESIDUAL = "residual, "
 
@@ -31,7 +28,9 @@ class ResidualView:
         self.run = pn.widgets.Select(label="Run", options=[], width=200)
         self.channel = pn.widgets.Select(label="Channel", options=[], width=160)
         self.diagnostic = pn.widgets.Select(label="Diagnostic", options=[], width=420)
-        self.record = ColumnDataSource({"x": [], "measured": [], **{name: [] for name in _COLOURS}})
+        self.record = ColumnDataSource(
+            {"x": [], "measured": [], **{name: [] for name in MODEL_COLOURS}}
+        )
         self.told = wrapped_text()
         self._drawn = _record_figure(self.record)
         self._errors, self._panel = pn.Column(), pn.Column()
@@ -107,7 +106,7 @@ class ResidualView:
             for name, values in (
                 ("x", found["x"]),
                 ("measured", found["measured"]),
-                *((name, found["residuals"].get(name, nothing)) for name in _COLOURS),
+                *((name, found["residuals"].get(name, nothing)) for name in MODEL_COLOURS),
             )
         }
         for item in self._drawn.legend[0].items[1:]:
@@ -145,7 +144,7 @@ def _record_figure(source: ColumnDataSource) -> Any:
     drawn = figure(width=620, height=340, tools="pan,wheel_zoom,box_zoom,reset", title="")
     measured = drawn.line("x", "measured", source=source, color="#B5B5B5",
                           legend_label="measured")  # fmt: skip
-    for name, colour in _COLOURS.items():
+    for name, colour in MODEL_COLOURS.items():
         drawn.line("x", name, source=source, color=colour, legend_label=_RESIDUAL + name)
     drawn.add_tools(HoverTool(renderers=[measured], mode="vline",
                               tooltips=[("x", "@x"), ("measured", "@measured")]))  # fmt: skip

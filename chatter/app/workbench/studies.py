@@ -38,12 +38,15 @@ class Study(NamedTuple):
         Name in Python -> default.
     compute : callable
         Called with the case, the options, the folder and a progress; returns a result.
+    goes_on : bool
+        Whether one that was ended goes on with what it has finished.
     """
 
     label: str
     description: str
     options: Mapping[str, Any]
     compute: Callable[[Any, Mapping[str, Any], Path, Progress], Any]
+    goes_on: bool = True
 
 
 def _sheet(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
@@ -86,9 +89,9 @@ def _whatif(case: Any, options: Mapping[str, Any], folder: Path, progress: Progr
 
 
 STUDIES = {
-    "check": Study("Check", "the stated cut: stable or not, and by how much", {}, _check),
+    "check": Study("Check", "the stated cut: stable or not, and by how much", {}, _check, False),
     "lobes": Study("Lobes", "stability lobe diagram with pockets", {}, _lobes),
-    "sheet": Study("Operator's sheet", "cuts worth making, as PDF and XLSX", {}, _sheet),
+    "sheet": Study("Operator's sheet", "cuts worth making, as PDF and XLSX", {}, _sheet, False),
     "optimum": Study(
         "Optimum",
         "the cut with the highest removal rate within the limits of [optimum]",
@@ -191,7 +194,7 @@ def run_measurement(
         result: Any = chatter.compare(measurement, given)
         sentences = result.sentences()
     else:
-        result = chatter.explain(measurement, given, report)
+        result = chatter.explain(measurement, given, report, folder)
         sentences = explanation_in_words(result.summary())
     save_result(result, folder, {"title": name, **call})
     write_residuals(result, folder)

@@ -18,6 +18,8 @@ from chatter.description.errors import InputError
 
 _RESULTS_OF_WHATIF = ("", "lobes", "critical depth", "forces", "surface", "frf")
 
+#: what is said of a study that was cancelled and keeps what it has finished
+_GOES_ON = "cancelled; Start goes on where it stopped, if the case and the options stay the same"
 #: option of a study that names the values that vary, and how far each does at first
 _VARY, _SHARE = "vary", "+-20%"
 
@@ -77,7 +79,9 @@ class StudiesView:
         folder = self._session.results(name)
         changed = self._session.changed
         note = "of the case as it stands here, which is not saved" if changed else ""
-        self.work.start(run_study, (name, case, given, folder), self._show_results, note)
+        told = _GOES_ON if STUDIES[name].goes_on else "cancelled"
+        arguments = (name, case, given, folder)
+        self.work.start(run_study, arguments, self._show_results, note, told)
 
     def _chosen(self) -> None:
         study = STUDIES[self.choice.value]

@@ -14,6 +14,7 @@ import tomlkit
 
 import chatter
 from chatter.app.workbench.cut_view import sound_of
+from chatter.app.workbench.diagnostic_figure import MODEL_COLOURS, diagnostic_figure
 from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.studies import explanation_in_words
 from chatter.description.errors import InputError
@@ -294,11 +295,44 @@ def test_the_repaired_case_is_accepted_under_a_new_name(workbench, tmp_path):
     chatter.load(tmp_path / "case.toml").patch({"material.Ktc": "700 MPa"}).save(
         results / "case-updated.toml"
     )
+    (results / "explanation.json").write_text('{"effects": [{"name": "runout"}]}')
+    view._show()
+    assert not view.accept_button.disabled
+    assert not view.none_to_accept.visible
     view.accept()
     assert workbench.session.name == "repaired.toml"
     assert chatter.load(tmp_path / "repaired.toml").material.Ktc == pytest.approx(700e6)
     view.accept()
     assert "is there already" in view.work.message.object
+
+
+def test_no_case_is_offered_where_nothing_was_found(workbench, tmp_path):
+    """The refitted case, and the declared one of contradictory data, were offered as repaired."""
+    view = workbench.measurement
+    folder = tmp_path / "measurements" / "set-1"
+    folder.mkdir(parents=True)
+    (folder / "measurement.toml").write_text('kind = "milling"\ncase = "../../case.toml"\n')
+    view.refresh()
+    assert "no repaired case yet" in view.none_to_accept.object
+    results = view._results("explain")
+    results.mkdir(parents=True)
+    shutil.copy(tmp_path / "case.toml", results / "case-updated.toml")
+    fatal = {"severity": "fatal", "description": "Fx of all runs is a copy"}
+    for found, told in (
+        ({"verdict": "nothing-missing"}, "lacks nothing"),
+        ({"verdict": "unexplained"}, "no known effect"),
+        ({"verdict": "unexplained", "partial": [{"name": "wear"}]}, "not certain"),
+        ({"verdict": "unexplained", "checks": [fatal]}, "Fx of all runs is a copy"),
+    ):
+        (results / "explanation.json").write_text(json.dumps(found))
+        view._show()
+        assert view.accept_button.disabled
+        assert told in view.none_to_accept.object
+    view.accept()
+    assert not (tmp_path / "repaired.toml").exists()
+    (results / "explanation.json").write_text('{"verdict": "unexplained", "empirical": [{}]}')
+    view._show()
+    assert not view.accept_button.disabled
 
 
 def test_a_measurement_that_lacks_its_runs_says_so(workbench, tmp_path):
@@ -340,3 +374,31 @@ def test_an_explanation_without_effects_has_no_errors_with_them():
     _, told = explanation_in_words({"verdict": "nothing-missing", "effects": [], "error": error})
     assert told == ("error of the prediction over the signal: of the declared case 10.4 %, "
                     "refitted 3.19 %, of noise alone 3.27 %")  # fmt: skip
+
+
+def test_a_cancelled_study_says_that_start_goes_on(workbench):
+    """ "cancelled" alone: whoever read it believed that all was lost."""
+    view = workbench.studies
+    view.choice.value = "pitch"
+    view.start()
+    until = time.monotonic() + PATIENCE
+    while not view.work.computations._running and time.monotonic() < until:
+        time.sleep(0.01)
+    view.work.computations.cancel()
+    assert view.work.computations.wait(PATIENCE)
+    assert "Start goes on where it stopped" in view.work.message.object
+    # a sheet keeps nothing
+    workbench.sheet.start()
+    while not workbench.sheet.work.computations._running and time.monotonic() < until:
+        time.sleep(0.01)
+    workbench.sheet.work.computations.cancel()
+    assert workbench.sheet.work.computations.wait(PATIENCE)
+    assert workbench.sheet.work.message.object == "cancelled"
+
+
+def test_bars_of_a_model_have_the_colour_of_its_curve():
+    """The refitted case was orange in the curves and blue in the bars, the repaired one so too."""
+    panel = {"kind": "Bars", "categories": ["run01"], "label": "residual over noise",
+             "series": {"refitted": [9.0], "repaired": [1.0]}, "floor": 1.0}  # fmt: skip
+    bars = {one.glyph.top: one.glyph.fill_color for one in diagnostic_figure(panel, "").renderers}
+    assert bars == {name: MODEL_COLOURS[name] for name in ("refitted", "repaired")}
