@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from bokeh.core.property.vectorization import Value
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -61,10 +62,15 @@ def _column(source: Any, given: Any) -> Any:
     return np.asarray(value, dtype=float)
 
 
+def _constant(given: Any) -> Any:
+    """Value of a property that a copied glyph holds as a constant."""
+    return given.value if isinstance(given, Value) else given
+
+
 def _line(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
     axes.plot(
-        _column(source, glyph.x), _column(source, glyph.y), color=glyph.line_color,
-        linewidth=glyph.line_width, linestyle={"dashed": "--", "dotted": ":"}.get(
+        _column(source, glyph.x), _column(source, glyph.y), color=_constant(glyph.line_color),
+        linewidth=_constant(glyph.line_width), linestyle={"dashed": "--", "dotted": ":"}.get(
             glyph.line_dash if isinstance(glyph.line_dash, str) else "", "-"), label=label,
     )  # fmt: skip
 
@@ -73,13 +79,19 @@ def _area(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
     x = _column(source, glyph.x)
     low, high = (np.broadcast_to(_column(source, one), x.shape) for one in (glyph.y1, glyph.y2))
     axes.fill_between(
-        x, low, high, color=glyph.fill_color, alpha=glyph.fill_alpha, linewidth=0.0, label=label
+        x,
+        low,
+        high,
+        color=_constant(glyph.fill_color),
+        alpha=_constant(glyph.fill_alpha),
+        linewidth=0.0,
+        label=label,
     )
 
 
 def _points(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
     x = _column(source, glyph.x)
-    given = glyph.fill_color
+    given = _constant(glyph.fill_color)
     field = getattr(given, "field", None) or (given if given in source.data else None)
     colour = list(source.data[field]) if field else given
     if x.size:

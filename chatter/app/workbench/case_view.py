@@ -117,7 +117,7 @@ class CaseView:
         try:
             self._session.set_values([(offered[name], {})])
         except InputError as error:
-            self.message.object = str(error)
+            self.message.object = self._session.short(error)
 
     def save(self) -> None:
         """Save the case, under another name where one is given."""

@@ -12,6 +12,7 @@ import panel as pn
 
 from chatter.app.workbench.channel_assignment import ChannelAssignment
 from chatter.app.workbench.long_work import LongWork
+from chatter.app.workbench.page_words import in_words_of_the_page
 from chatter.app.workbench.repaired_case import UPDATED, why_no_repaired_case
 from chatter.app.workbench.residual_file import RESIDUALS
 from chatter.app.workbench.residual_view import ResidualView
@@ -294,7 +295,7 @@ class MeasurementView:
         try:
             self.text.value = self.assignment.toml(self._case_from(self._assigned_to))
         except InputError as error:
-            self.fault.object = str(error)
+            self.fault.object = in_words_of_the_page(str(error))
         else:
             self.fault.object = ""
 

@@ -13,6 +13,8 @@ from chatter.plots.style import write_png
 
 #: pixels of a letter of a legend and of a sign with its distances, and of what is beside the axes
 _LETTER, _SIGN, _BESIDE = 6, 40, 90
+#: of a letter as it is on the average, where the entries stand in one line
+_MEAN_LETTER = 5
 
 
 def legend_above(figure: Any) -> None:
@@ -29,6 +31,8 @@ def legend_above(figure: Any) -> None:
 def _columns_of_legend(legend: Any, width: int) -> int:
     """Entries side by side, as many as the figure is wide for."""
     texts = [str(getattr(item.label, "value", item.label) or "") for item in legend.items]
+    if sum(len(text) * _MEAN_LETTER + _SIGN for text in texts) <= width - _BESIDE:
+        return max(1, len(texts))
     widest = max((len(text) for text in texts), default=0) * _LETTER + _SIGN
     return max(1, min(len(texts), int((width - _BESIDE) // widest)))
 

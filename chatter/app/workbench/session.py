@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import tomlkit
 
 from chatter.app.workbench.folder_files import is_cut, is_machine
+from chatter.app.workbench.page_words import in_words_of_the_page
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
 from chatter.description.file_access import open_folder
@@ -225,8 +226,8 @@ class Session:
 
 
 def without_folder(text: object, folder: Path) -> str:
-    """Sentence with the names of files relative to a folder."""
-    return str(text).replace(f"{folder}{os.sep}", "")
+    """Sentence in the words of the page, with the names of files relative to a folder."""
+    return in_words_of_the_page(str(text).replace(f"{folder}{os.sep}", ""))
 
 
 def root_of_results(folder: Path) -> Path:

@@ -132,7 +132,10 @@ class StabilityTab:
                 _DRAWN[name](drawn, folder)
 
         arguments = (name, case, STUDIES[name].options, folder)
-        self.work.start(run_study, arguments, draw, f"{label}: its tables are in the view Studies")
+        told = f"{label}: its tables are in the view Studies"
+        if drawn is not None and drawn.moved():
+            told += "; it is of the case as it is, without the sliders that were moved"
+        self.work.start(run_study, arguments, draw, told)
 
     def end(self) -> None:
         """Give up what is computed."""

@@ -17,6 +17,8 @@ from chatter.app.sliders import Slider
 from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.curves_in_frame import CLIPPED, FAST, keep_in_frame
+from chatter.app.workbench.legend_samples import put_samples_into_legend, set_style
+from chatter.app.workbench.page_words import in_words_of_the_page
 from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE, table_buttons
 from chatter.app.workbench.session import without_folder
@@ -90,7 +92,9 @@ class StabilityView:
         self.cancel = pn.widgets.Button(label="Stop")
         self.table, self.workbook = table_buttons(self.limits, "lobes")
         self.reset = pn.widgets.Button(label="Reset")
-        self.computations = Computations(lambda text: self._later(self.message, text))
+        self.computations = Computations(
+            lambda text: self._later(self.message, in_words_of_the_page(text))
+        )
         self.cancel.on_click(lambda _: self.computations.cancel())
         self.reset.on_click(lambda _: self.put_back())
         self._lobes, self._motion = self._lobes_figure(), self._motion_figure()
@@ -249,6 +253,8 @@ class StabilityView:
                 start=diagram["spindle_speed_rpm"][0], end=diagram["spindle_speed_rpm"][-1]
             )
             self._lobes.y_range.update(start=0.0, end=top)
+        style = {name: operating[name][0] for name in ("colour", "marker")}
+        set_style(self._lobes, "operating point", style)
         self._update_legend()
         told = "; ".join([*_DOUBT[: not cut["certain"]], *diagram["notes"]])
         self.message.object = without_folder(told, self._live.case.folder)
@@ -257,8 +263,7 @@ class StabilityView:
         """Name what is drawn; an entry that comes is painted, one of a source that fills is not."""
         (legend,) = self._lobes.legend
         for item in legend.items:
-            (drawn,) = item.renderers
-            if len(drawn.data_source.data["speed"]):
+            if len(self._curves[item.label.value].data_source.data["speed"]):
                 item.visible = True
 
     def _depth_is_stated(self) -> bool:
@@ -355,6 +360,7 @@ class StabilityView:
             item.visible = False  # until there is something to draw
         if of_other is None:
             keep_in_frame(drawn, _ALONG_X, _ALONG_Y)
+        self._curves = put_samples_into_legend(drawn)
         drawn.on_event(Tap, lambda event: self.simulate(event.x, event.y))
         return drawn
 

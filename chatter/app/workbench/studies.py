@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import chatter
+from chatter.app.workbench.page_words import in_words_of_the_page
 from chatter.app.workbench.residual_file import RESIDUALS, write_residuals
 from chatter.app.workbench.separate_process import Report
 from chatter.app.workbench.session import (
@@ -261,6 +262,7 @@ def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:
             page.savefig(folder / f"page-{number}.svg")
     else:
         drawn.savefig(folder / PICTURE)
-    sentences = list(result.sentences()) if hasattr(result, "sentences") else []
+    told = result.sentences() if hasattr(result, "sentences") else ()
+    sentences = [in_words_of_the_page(one) for one in told]
     notes = [without_folder(one, root_of_results(folder)) for one in getattr(result, "notes", ())]
     write_call(folder, {**call, "sentences": sentences, "notes": notes})

@@ -139,7 +139,7 @@ class TapTestView:
         try:
             folder = self._session.store(name, files, readable_extensions())
         except InputError as error:
-            self.message.object = str(error)
+            self.message.object = self._session.short(error)
             return
         if name != self._folder_name():
             self.upload.forget()
@@ -240,7 +240,7 @@ class TapTestView:
         try:
             self._session.set_modes(tables)
         except InputError as error:
-            self.message.object = str(error)
+            self.message.object = self._session.short(error)
             return
         self.message.object = (
             f"{len(tables)} modes are in {self._session.name}; it is not saved yet"
