@@ -25,7 +25,8 @@ from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.description.wording import nearest
 from chatter.io.presentation import presentation
-from chatter.io.result_files import NotebookResult, as_json, csv_text, finite_or_none, write_results
+from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
+from chatter.io.result_tables import Column, csv_text
 from chatter.stability.lobes import lobes
 from dynamics.identification.result import ModalFit
 from dynamics.modal.modes import Mode
@@ -144,9 +145,9 @@ class Assembly(NotebookResult):
         texts = {
             "tool-point.csv": csv_text(
                 {
-                    "frequency [Hz]": (self.frequency, ".8g"),
-                    "real [m/N]": (best.real, ".8e"),
-                    "imag [m/N]": (best.imag, ".8e"),
+                    "frequency [Hz]": Column(self.frequency, ".8g"),
+                    "real [m/N]": Column(best.real, ".8e"),
+                    "imag [m/N]": Column(best.imag, ".8e"),
                 }
             ),
             "modes.toml": modes_as_toml(
@@ -159,12 +160,12 @@ class Assembly(NotebookResult):
             count = self.lobes.spindle_speed.size
             texts["lobes-stick-out.csv"] = csv_text(
                 {
-                    "stick-out [mm]": (np.repeat(1e3 * self.stick_out, count), ".5g"),
+                    "stick-out [mm]": Column(np.repeat(1e3 * self.stick_out, count), ".5g"),
                     "spindle_speed [rpm]": (
                         np.tile(rpm(self.lobes.spindle_speed), self.stick_out.size),
                         ".8g",
                     ),
-                    "critical_depth [mm]": (1e3 * self.lobes.critical_depth.ravel(), ".6g"),
+                    "critical_depth [mm]": Column(1e3 * self.lobes.critical_depth.ravel(), ".6g"),
                 }
             )
         return write_results(folder, texts, {"assemble.png": self.plot()})

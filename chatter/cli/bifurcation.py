@@ -13,6 +13,7 @@ from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.usual_units import usual_unit
+from chatter.io.result_tables import require_kind
 from chatter.report.console import print_line
 
 if TYPE_CHECKING:
@@ -35,10 +36,12 @@ def bifurcation(
     ] = 60,
     assignments: options.Assignments = None,
     cluster: options.Cluster = None,
+    tables: options.Tables = "csv",
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
     """Simulate a case over a range of one value: where chatter sets in, and of what kind."""
+    require_kind(tables, "--tables")
     description = options.patched_case(case, assignments)
     from chatter.engine.loop import run
     from chatter.studies.bifurcation import bifurcation as run_bifurcation
@@ -59,7 +62,9 @@ def bifurcation(
             cluster=cluster,
         )
     options.print_coefficients(description)
-    present(diagram, folder, json=json, words=_print_onsets)
+    present(
+        diagram, folder, json=json, words=_print_onsets, save=partial(diagram.save, tables=tables)
+    )
 
 
 def _print_onsets(diagram: BifurcationDiagram) -> None:

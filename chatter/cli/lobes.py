@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,6 +15,7 @@ from chatter.cli.options import (
     Json,
     Method,
     OutputFolder,
+    Tables,
     output_folder,
     patched_case,
     print_coefficients,
@@ -24,6 +26,7 @@ from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import rounded_down, to_digits
+from chatter.io.result_tables import require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
@@ -71,6 +74,7 @@ class LobesOptions:
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="With --live, open no browser.")
     ] = False
+    tables: Tables = "csv"
     out: OutputFolder = None
     json: Json = False
 
@@ -78,6 +82,7 @@ class LobesOptions:
 @takes_options
 def lobes(options: LobesOptions) -> None:
     """Compute the stability lobe diagram of a case."""
+    require_kind(options.tables, "--tables")
     description = patched_case(options.case, options.assignments)
     live, grid, of_live = options.live, options.grid, options.port or options.no_browser
     if options.x or options.y:
@@ -85,7 +90,8 @@ def lobes(options: LobesOptions) -> None:
             raise InputError("--x and --y draw a diagram of their own; leave --live, --grid out")
         _over_paths(description, options)
         return
-    if live and (grid or options.json or options.out or options.cluster):
+    of_files = grid or options.json or options.out or options.cluster or options.tables != "csv"
+    if live and of_files:
         raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
     if not live and of_live:
         raise InputError("--port and --no-browser belong to --live; give it with them")
@@ -102,7 +108,14 @@ def lobes(options: LobesOptions) -> None:
     with progress_bar("stability limits at all speeds") as progress:
         diagram = run_lobes(description, options.method, grid, progress, options.cluster, folder)
     print_coefficients(description)
-    present(diagram, folder, json=options.json, words=_print_diagram, notes=diagram.notes)
+    present(
+        diagram,
+        folder,
+        json=options.json,
+        words=_print_diagram,
+        notes=diagram.notes,
+        save=partial(diagram.save, tables=options.tables),
+    )
 
 
 def _over_paths(case: Case, options: LobesOptions) -> None:
@@ -115,7 +128,14 @@ def _over_paths(case: Case, options: LobesOptions) -> None:
             case, options.x, options.y, options.method, progress, options.cluster, folder
         )
     print_coefficients(case)
-    present(diagram, folder, json=options.json, words=print_sentences, notes=diagram.notes)
+    present(
+        diagram,
+        folder,
+        json=options.json,
+        words=print_sentences,
+        notes=diagram.notes,
+        save=partial(diagram.save, tables=options.tables),
+    )
 
 
 def _serve(description: Case, options: LobesOptions) -> None:

@@ -15,6 +15,7 @@ from chatter.description.errors import InputError
 from chatter.description.material_words import coefficients_in_words, notes_on_material
 from chatter.description.patchable import Description
 from chatter.description.stated_cut import refuse_both_of_a_pair
+from chatter.io.result_tables import KINDS
 from chatter.report.console import print_message, print_notes
 from chatter.report.recording import document
 from chatter.stability.registry import AUTO, METHODS
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
 
 Described = TypeVar("Described", bound=Description)
+
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 MachinePath = Annotated[Path, typer.Argument(metavar="MACHINE", help="Machine file (TOML).")]
@@ -45,6 +47,7 @@ Columns = Annotated[
         help='Of a file without headings: "time [s], force [N], acceleration [m/s^2]".',
     ),
 ]
+Tables = Annotated[str, typer.Option("--tables", help=f"Files of the tables: {', '.join(KINDS)}.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Cluster = Annotated[
     str | None,

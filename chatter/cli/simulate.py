@@ -15,7 +15,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
-from chatter.io.recorded_columns import KINDS, require_kind
+from chatter.io.result_tables import KINDS, require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def simulate(
     json: options.Json = False,
 ) -> None:
     """Simulate the cut of a case: forces, vibration, surface, chatter or not."""
-    require_kind(signals)
+    require_kind(signals, "signals")
     description = options.patched_case(case, assignments)
     if chip is not None:
         description = description.patch({"simulation.chip": chip})

@@ -15,6 +15,7 @@ from chatter.cli.options import (
     Json,
     Method,
     OutputFolder,
+    Tables,
     output_folder,
     patched_case,
     print_coefficients,
@@ -22,6 +23,7 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
+from chatter.io.result_tables import require_kind
 from chatter.report.console import print_line
 
 if TYPE_CHECKING:
@@ -39,6 +41,7 @@ class UncertaintyOptions:
     assignments: Assignments = None
     method: Method = None
     cluster: Cluster = None
+    tables: Tables = "csv"
     out: OutputFolder = None
     json: Json = False
 
@@ -46,6 +49,7 @@ class UncertaintyOptions:
 @takes_options
 def uncertainty(options: UncertaintyOptions) -> None:
     """Propagate values such as "1650 +- 80 MPa" to a band of lobes and a probability."""
+    require_kind(options.tables, "--tables")
     description = patched_case(options.case, options.assignments)
     from chatter.studies.uncertainty.monte_carlo import uncertainty as run_uncertainty
 
@@ -63,7 +67,13 @@ def uncertainty(options: UncertaintyOptions) -> None:
             cluster=options.cluster,
         )
     print_coefficients(description)
-    present(found, folder, json=options.json, words=_print_probability)
+    present(
+        found,
+        folder,
+        json=options.json,
+        words=_print_probability,
+        save=partial(found.save, tables=options.tables),
+    )
 
 
 def _print_probability(found: Uncertainty) -> None:

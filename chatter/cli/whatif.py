@@ -15,6 +15,7 @@ from chatter.cli.options import (
     Json,
     Method,
     OutputFolder,
+    Tables,
     output_folder,
     print_coefficients,
 )
@@ -24,6 +25,7 @@ from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.io.result_tables import require_kind
 from chatter.report.console import print_line
 
 if TYPE_CHECKING:
@@ -69,6 +71,7 @@ class WhatIfOptions:
     assignments: Assignments = None
     method: Method = None
     cluster: Cluster = None
+    tables: Tables = "csv"
     out: OutputFolder = None
     json: Json = False
 
@@ -76,6 +79,7 @@ class WhatIfOptions:
 @takes_options
 def whatif(options: WhatIfOptions) -> None:
     """Ask what would change: lobes, limits, forces, surface or FRFs over values of any path."""
+    require_kind(options.tables, "--tables")
     if options.studies:
         _list_studies()
         return
@@ -114,7 +118,13 @@ def whatif(options: WhatIfOptions) -> None:
         )
     if isinstance(model, Case):
         print_coefficients(model)
-    present(found, folder, json=options.json, words=print_sentences)
+    present(
+        found,
+        folder,
+        json=options.json,
+        words=print_sentences,
+        save=partial(found.save, tables=options.tables),
+    )
 
 
 def _chosen(study: str | None, vary: list[str] | None) -> PresetStudy | None:

@@ -15,6 +15,7 @@ hammer_records   hammer records, one or a folder of them
 matrices         matrices and nodes of a finite element program
 recorded_columns columns of a run as CSV or Parquet
 result_files     texts, summaries and pictures that results write
+result_tables    tables of results as CSV or Parquet
 presentation     pictures and pages of results, loaded when asked for
 shipped_examples examples that are installed with the package
 ================ ==================================================================================

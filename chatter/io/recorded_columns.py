@@ -7,27 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from chatter.description.errors import InputError
-from chatter.description.formatting import formatted
 from chatter.description.whole_files import write_whole
-from chatter.io.result_files import csv_of_rows
+from chatter.io.result_tables import Column, csv_of_rows, require_kind, write_parquet
 
-#: what a run may write its columns as
-KINDS = ("csv", "parquet", "none")
 _ROWS_AT_ONCE = 512
-
-
-def require_kind(kind: str) -> None:
-    """Refuse what is none of `KINDS`, and Parquet where pyarrow is not installed; InputError."""
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise InputError(f"signals: {formatted(kind)} is not known; there are {', '.join(KINDS)}")
-    if kind == "parquet":
-        try:
-            import pyarrow.parquet  # noqa: F401
-        except ImportError as error:
-            raise InputError(
-                'signals: Parquet files are written with pyarrow: install "chatter[formats]"'
-            ) from error
 
 
 def write_columns(
@@ -37,17 +20,13 @@ def write_columns(
 
     Forms are those of numbers in CSV, such as "%.6g"; Parquet keeps all digits.
     """
-    require_kind(kind)
+    require_kind(kind, "signals")
     if kind == "none":
         return []
     path = folder / f"{name}.{kind}"
     folder.mkdir(parents=True, exist_ok=True)
     if kind == "parquet":
-        import pyarrow
-        import pyarrow.parquet
-
-        table = pyarrow.table(dict(columns))
-        return [write_whole(path, lambda file: pyarrow.parquet.write_table(table, file))]
+        return [write_parquet(path, {name: Column(one) for name, one in columns.items()})]
     table = np.column_stack(list(columns.values()))
     return [write_whole(path, csv_of_rows([list(columns)]) + _rows(table, forms))]
 

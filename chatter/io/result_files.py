@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
-import re
-from collections.abc import Iterable, Mapping, Sequence
-from io import StringIO
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.given_path import path_given
 from chatter.description.whole_files import write_whole
 from chatter.io.presentation import presentation
+from chatter.io.result_tables import Columns, require_kind, write_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-#: what a formula of a spreadsheet begins with, as wide as other keyboards write it too
-_BEGIN_FORMULAS = tuple("=+-@|＝＋－＠")
-#: a number with or without unit, which is none, and a dash for nothing
-_QUANTITY = re.compile(r"[+-]?[0-9.]+([eE][+-]?[0-9]+)?( [\w/%*^°²³·]+)?|[+-](inf|nan)|-")
 
 
 def finite_or_none(value: float) -> float | None:
@@ -32,36 +25,6 @@ def finite_or_none(value: float) -> float | None:
 def as_json(summary: Mapping) -> str:
     """Text of a summary; refuses nan and inf, which JSON does not know."""
     return json.dumps(summary, indent=2, allow_nan=False) + "\n"
-
-
-def csv_of_rows(rows: Iterable[Sequence[str]]) -> str:
-    """CSV of rows of texts, which are quoted where they hold a comma and `inert`."""
-    text = StringIO()
-    csv.writer(text, lineterminator="\n").writerows(map(inert, row) for row in rows)
-    return text.getvalue()
-
-
-def inert(cell: str) -> str:
-    """Text of a cell that no spreadsheet takes for a formula: "=1+1" gets an apostrophe."""
-    begins = cell.strip().startswith(_BEGIN_FORMULAS)
-    return f"'{cell}" if begins and not _QUANTITY.fullmatch(cell) else cell
-
-
-def csv_text(columns: Mapping[str, tuple[Iterable[Any], str]]) -> str:
-    """CSV of columns: heading -> values and their format; empty where a value is none or no number.
-
-    Texts and truth values stand as they are, texts `inert`.
-    """
-    cells = [[_cell(value, form) for value in values] for values, form in columns.values()]
-    return csv_of_rows([list(columns), *zip(*cells, strict=True)])
-
-
-def _cell(value: Any, form: str) -> str:
-    if isinstance(value, str):
-        return value
-    if isinstance(value, bool):
-        return str(value).lower()
-    return format(value, form) if value is not None and math.isfinite(value) else ""
 
 
 def write_results(
@@ -112,8 +75,8 @@ class SavedResult(NotebookResult):
         """Content of summary.json."""
         raise NotImplementedError
 
-    def tables(self) -> Mapping[str, str]:
-        """Content of each further file of text, by its name."""
+    def tables(self) -> Mapping[str, Columns]:
+        """Columns of each table that is written, by the name of its file without extension."""
         raise NotImplementedError
 
     def plot(self) -> Figure:
@@ -121,13 +84,33 @@ class SavedResult(NotebookResult):
         module, _, function = self.drawn_by.rpartition(".")
         return getattr(presentation(module), function)(self)
 
-    def save(self, folder: str | Path) -> list[Path]:
+    def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
         """Write tables, summary.json and the picture into a folder.
+
+        Parameters
+        ----------
+        folder : path
+        tables : str, optional
+            Files of the tables: "csv", "parquet" or "none".
 
         Returns
         -------
         list of Path
             What was written.
+
+        Raises
+        ------
+        InputError
+            If `tables` is none of these, or pyarrow is needed and not installed.
         """
-        texts = {**self.tables(), "summary.json": as_json(self.summary())}
-        return write_results(folder, texts, {self.picture: self.plot()})
+        require_kind(tables)
+        summary = {"summary.json": as_json(self.summary())}
+        written = write_results(folder, summary, {self.picture: self.plot()})
+        return [
+            *(
+                path
+                for name, columns in self.tables().items()
+                for path in write_table(Path(folder), name, tables, columns)
+            ),
+            *written,
+        ]

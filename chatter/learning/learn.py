@@ -24,11 +24,11 @@ from chatter.io.presentation import presentation
 from chatter.io.result_files import (
     NotebookResult,
     as_json,
-    csv_text,
     finite_or_none,
     short_repr,
     write_results,
 )
+from chatter.io.result_tables import Column, csv_text
 from chatter.learning.contradictions import contradictions, surprises
 from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
@@ -201,9 +201,9 @@ class Learnt(NotebookResult):
         speeds, depths = np.meshgrid(self.diagram.speeds, self.diagram.depths, indexing="ij")
         return csv_text(
             {
-                "spindle_speed [rpm]": (rpm(speeds.ravel()), ".6g"),
-                "axial_depth [mm]": (1e3 * depths.ravel(), ".5g"),
-                "probability_of_stability": (self.diagram.probability.ravel(), ".4f"),
+                "spindle_speed [rpm]": Column(rpm(speeds.ravel()), ".6g"),
+                "axial_depth [mm]": Column(1e3 * depths.ravel(), ".5g"),
+                "probability_of_stability": Column(self.diagram.probability.ravel(), ".4f"),
             }
         )
 

@@ -16,7 +16,8 @@ from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.description.whole_files import write_whole
-from chatter.io.result_files import SavedResult, csv_of_rows, finite_or_none
+from chatter.io.result_files import SavedResult, finite_or_none
+from chatter.io.result_tables import Column, Columns
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lowest_limit import LowestLimit
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
@@ -139,15 +140,16 @@ class StabilityMap(SavedResult):
         known = self.spectral_radius[np.isfinite(self.spectral_radius)]
         return float((known < 1.0).mean())
 
-    def tables(self) -> dict[str, str]:
-        """Content of lobes.csv."""
-        rows = [
-            [f"{x:.9g}", f"{y:.9g}", f"{radius:.9g}" if math.isfinite(radius) else ""]
-            for y, row in zip(self.y_axis.values, self.spectral_radius, strict=True)
-            for x, radius in zip(self.x_axis.values, row, strict=True)
-        ]
-        heading = [self.x_axis.heading, self.y_axis.heading, "spectral_radius"]
-        return {"lobes.csv": csv_of_rows([heading, *rows])}
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the table "lobes", a row a point of the map."""
+        y, x = np.meshgrid(self.y_axis.values, self.x_axis.values, indexing="ij")
+        return {
+            "lobes": {
+                self.x_axis.heading: Column(x.ravel(), ".9g"),
+                self.y_axis.heading: Column(y.ravel(), ".9g"),
+                "spectral_radius": Column(self.spectral_radius.ravel(), ".9g"),
+            }
+        }
 
     def save_grid(self, path: Path) -> Path:
         """Write grid.npz of a map over spindle speed [rpm] and axial depth [mm]."""
@@ -342,46 +344,41 @@ class StabilityDiagram(SavedResult):
             lines.append(f"{name.replace('_', ' ')} {limit} mm, at {self.axis.name} = {value}")
         return lines
 
-    def save(self, folder: str | Path) -> list[Path]:
+    def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
         """Write lobes.csv, lobes.png, summary.json and, with a grid, grid.npz.
+
+        Parameters and errors are those of `SavedResult.save`.
 
         Returns
         -------
         list of Path
             What was written.
         """
-        written = super().save(folder)
+        written = super().save(folder, tables)
         if self.grid is not None:
             written.append(self.grid.save_grid(Path(folder) / "grid.npz"))
         return written
 
-    def tables(self) -> dict[str, str]:
-        """Content of lobes.csv."""
-        heading = [
-            self.axis.heading, "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation",
-        ]  # fmt: skip
-        if not self.is_over_speed:
-            heading += ["all_crossings [mm]", "max_axial_depth [mm]", "excluded"]
-        rows = [self._row(index) for index in range(self.axis.values.size)]
-        return {"lobes.csv": csv_of_rows([heading, *rows])}
-
-    def _row(self, index: int) -> list[str]:
-        value = self.axis.values[index]
-        first = f"{value:.4f}" if self.is_over_speed else f"{value:.9g}"
-        if self.reasons and self.reasons[index]:
-            return [first, "", "", "none", "", "", self.reasons[index]]
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the table "lobes", a row a value of the axis."""
         limits = self.limits
-        frequency = limits.chatter_frequency[index]
-        row = [
-            first,
-            f"{limits.critical_depth[index] * 1e3:.7g}",
-            f"{frequency:.3f}" if math.isfinite(frequency) else "",
-            limits.bifurcation[index],
-        ]
-        if not self.is_over_speed:
-            crossings = " ".join(f"{depth * 1e3:.7g}" for depth in limits.crossings[index])
-            row += [crossings, f"{self.max_depth[index] * 1e3:.7g}", ""]
-        return row
+        columns = {
+            self.axis.heading: Column(self.axis.values, ".4f" if self.is_over_speed else ".9g"),
+            "critical_depth [mm]": Column(limits.critical_depth * 1e3, ".7g", infinite="inf"),
+            "chatter_frequency [Hz]": Column(limits.chatter_frequency, ".3f"),
+            "bifurcation": Column(limits.bifurcation),
+        }
+        if self.is_over_speed:
+            return {"lobes": columns}
+        crossings = [" ".join(f"{1e3 * one:.7g}" for one in found) for found in limits.crossings]
+        return {
+            "lobes": {
+                **columns,
+                "all_crossings [mm]": Column(crossings),
+                "max_axial_depth [mm]": Column(self.max_depth * 1e3, ".7g"),
+                "excluded": Column(self.reasons or [""] * len(crossings)),
+            }
+        }
 
 
 def _sentences_over_speed(summary: Mapping[str, Any]) -> list[str]:

@@ -17,6 +17,7 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.given_values import text_given, values_given
 from chatter.io.result_files import SavedResult, finite_or_none
+from chatter.io.result_tables import Column, Columns
 from chatter.simulation.perturbation.multiplier import periods_per_revolution
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
@@ -105,13 +106,26 @@ class BifurcationDiagram(SavedResult):
             "linear_analysis": self.linear.summary(),
         }
 
-    def tables(self) -> dict[str, str]:
-        """Content of bifurcation.csv."""
-        lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
-        for point in self.points:
-            for x, y, z in point.poincare_section * 1e6:
-                lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
-        return {"bifurcation.csv": "\n".join(lines) + "\n"}
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the table "bifurcation", a row a point of a Poincaré section."""
+        counts = [len(one.poincare_section) for one in self.points]
+        displacement = np.concatenate(
+            [np.empty((0, 3)), *(one.poincare_section for one in self.points)]
+        )
+        values, verdicts = (
+            np.repeat([getattr(one, name) for one in self.points], counts)
+            for name in ("value", "verdict")
+        )
+        return {
+            "bifurcation": {
+                f"{self.path} [SI]": Column(values, ".9g"),
+                **{
+                    f"{axis} [um]": Column(1e6 * along, ".6g")
+                    for axis, along in zip("xyz", displacement.T, strict=True)
+                },
+                "verdict": Column(verdicts.tolist()),
+            }
+        }
 
 
 @takes_case_or_path

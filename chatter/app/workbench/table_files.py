@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from chatter.description.errors import InputError
-from chatter.io.result_files import csv_of_rows
+from chatter.io.result_tables import csv_of_rows
 from chatter.studies.frf_units import frf_unit
 
 _SHOWN_ROWS = 60

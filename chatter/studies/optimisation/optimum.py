@@ -8,7 +8,8 @@ from typing import ClassVar
 from chatter.description.case import Case
 from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, csv_text, finite_or_none
+from chatter.io.result_files import SavedResult, finite_or_none
+from chatter.io.result_tables import Column, Columns
 from chatter.studies.optimisation.candidate import EASING, EASINGS, TIME_DOMAIN, Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import LIMITED, Limits
@@ -160,9 +161,12 @@ class Optimum(SavedResult):
             )
         return lines
 
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml."""
-        written, path = super().save(folder), Path(folder) / "case-optimum.toml"
+    def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
+        """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml.
+
+        Parameters and errors are those of `SavedResult.save`.
+        """
+        written, path = super().save(folder, tables), Path(folder) / "case-optimum.toml"
         if self.best_case is not None:
             self.best_case.save(path)
             return [*written, path]
@@ -170,35 +174,33 @@ class Optimum(SavedResult):
         path.unlink(missing_ok=True)
         return written
 
-    def tables(self) -> dict[str, str]:
-        """Content of optimum.csv."""
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the table "optimum"."""
         found = self.candidates
         points = [one.point for one in found]
         known = [one.probability for one in found]
         checks = [one.verification for one in found]
         rates = [one.removal_rate * _PER_MINUTE for one in found]
         active = [" ".join(name.replace(" ", "-") for name in one.active) for one in found]
-        table = csv_text(
-            {
-                "rank": (range(1, len(found) + 1), "d"),
-                "spindle_speed [rpm]": ([rpm(one.spindle_speed) for one in points], ".8g"),
-                "axial_depth [mm]": ([one.axial_depth * 1e3 for one in points], ".7g"),
-                "radial_depth [mm]": ([one.radial_depth * 1e3 for one in points], ".7g"),
-                "feed_per_tooth [mm]": ([one.feed_per_tooth * 1e3 for one in points], ".7g"),
-                "removal_rate [cm^3/min]": (rates, ".7g"),
-                "power [kW]": ([one.power * 1e-3 for one in found], ".7g"),
-                "torque [N m]": ([one.torque for one in found], ".7g"),
-                "deflection [um]": ([one.deflection * 1e6 for one in found], ".7g"),
-                "surface_error [um]": ([one.surface_error * 1e6 for one in found], ".7g"),
-                "critical_depth [mm]": ([one.critical_depth * 1e3 for one in found], ".7g"),
-                "probability_of_stability": ([one and one.stable for one in known], ".6g"),
-                "probability": ([one and one.value for one in known], ".6g"),
-                "active": (active, ""),
-                "time_domain_verdict": ([one and one.verdict for one in checks], ""),
-                "time_domain_verified": ([one and one.verified for one in checks], ""),
-            }
-        )
-        return {"optimum.csv": table}
+        table = {
+            "rank": Column(range(1, len(found) + 1), "d"),
+            "spindle_speed [rpm]": Column([rpm(one.spindle_speed) for one in points], ".8g"),
+            "axial_depth [mm]": Column([one.axial_depth * 1e3 for one in points], ".7g"),
+            "radial_depth [mm]": Column([one.radial_depth * 1e3 for one in points], ".7g"),
+            "feed_per_tooth [mm]": Column([one.feed_per_tooth * 1e3 for one in points], ".7g"),
+            "removal_rate [cm^3/min]": Column(rates, ".7g"),
+            "power [kW]": Column([one.power * 1e-3 for one in found], ".7g"),
+            "torque [N m]": Column([one.torque for one in found], ".7g"),
+            "deflection [um]": Column([one.deflection * 1e6 for one in found], ".7g"),
+            "surface_error [um]": Column([one.surface_error * 1e6 for one in found], ".7g"),
+            "critical_depth [mm]": Column([one.critical_depth * 1e3 for one in found], ".7g"),
+            "probability_of_stability": Column([one and one.stable for one in known], ".6g"),
+            "probability": Column([one and one.value for one in known], ".6g"),
+            "active": Column(active, ""),
+            "time_domain_verdict": Column([one and one.verdict for one in checks], ""),
+            "time_domain_verified": Column([one and one.verified for one in checks], ""),
+        }
+        return {"optimum": table}
 
 
 def _ends(values) -> list[float]:

@@ -12,7 +12,8 @@ from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.formatting import rounded_down
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, csv_text
+from chatter.io.result_files import SavedResult
+from chatter.io.result_tables import Column, Columns
 from chatter.studies.pitch_design.families import regeneration
 from chatter.studies.pitch_design.pitch_search import Design
 
@@ -154,36 +155,35 @@ class PitchResult(SavedResult):
         shares = " and ".join(f"{1.0 - one.kept:.0%}" for one in (self.best, self.original))
         return f" (less {shares}: edge forces that set in at a chip of zero, frictions at rest)"
 
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
+    def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
+        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml.
+
+        Parameters and errors are those of `SavedResult.save`.
+        """
         path = Path(folder) / "case-pitch.toml"
-        written = super().save(folder)
+        written = super().save(folder, tables)
         self.best_case.save(path)
         return [*written, path]
 
-    def tables(self) -> dict[str, str]:
-        """Content of pitch.csv and lobes.csv."""
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the tables "pitch" and "lobes"."""
         found = self.designs
         angles = [" ".join(f"{angle:g}" for angle in one.pitch) for one in found]
-        designs = csv_text(
-            {
-                "rank": (range(1, len(found) + 1), "d"),
-                "name": ([one.name for one in found], ""),
-                "pitch [deg]": (angles, ""),
-                "lowest_limit [mm]": ([one.lowest_limit * 1e3 for one in found], ".6g"),
-                "stable_below [mm]": ([one.stable_below * 1e3 for one in found], ".6g"),
-                "mean_limit [mm]": ([one.limits.mean() * 1e3 for one in found], ".6g"),
-                "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
-            }
-        )
-        limits = csv_text(
-            {
-                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
-                "critical_depth_before [mm]": (self.original.limits * 1e3, ".6g"),
-                "critical_depth_after [mm]": (self.best.limits * 1e3, ".6g"),
-            }
-        )
-        return {"pitch.csv": designs, "lobes.csv": limits}
+        designs = {
+            "rank": Column(range(1, len(found) + 1), "d"),
+            "name": Column([one.name for one in found], ""),
+            "pitch [deg]": Column(angles, ""),
+            "lowest_limit [mm]": Column([one.lowest_limit * 1e3 for one in found], ".6g"),
+            "stable_below [mm]": Column([one.stable_below * 1e3 for one in found], ".6g"),
+            "mean_limit [mm]": Column([one.limits.mean() * 1e3 for one in found], ".6g"),
+            "max_pitch_ratio": Column([one.max_pitch_ratio for one in found], ".5g"),
+        }
+        limits = {
+            "spindle_speed [rpm]": Column(rpm(self.speeds), ".4f"),
+            "critical_depth_before [mm]": Column(self.original.limits * 1e3, ".6g"),
+            "critical_depth_after [mm]": Column(self.best.limits * 1e3, ".6g"),
+        }
+        return {"pitch": designs, "lobes": limits}
 
 
 def _below(one: Design) -> str:

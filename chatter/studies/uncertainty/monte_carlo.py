@@ -14,7 +14,8 @@ from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, csv_text, finite_or_none
+from chatter.io.result_files import SavedResult, finite_or_none
+from chatter.io.result_tables import Column, Columns
 from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.model import milling_model
 from chatter.stability.neglected_effects import NeglectedEffect, lowest_factor, reasons_of
@@ -190,31 +191,27 @@ class Uncertainty(SavedResult):
             ],
         }
 
-    def tables(self) -> dict[str, str]:
-        """Content of uncertainty.csv and samples.csv."""
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the tables "uncertainty" and "samples"."""
         limits = {
-            f"limit_{100.0 * level:.0f}_percent [mm]": (row * 1e3, ".7g")
+            f"limit_{100.0 * level:.0f}_percent [mm]": Column(row * 1e3, ".7g")
             for level, row in zip(LEVELS, self.quantiles(), strict=True)
         }
         probability = self.probability_at(self.case.cut.axial_depth)
-        band = csv_text(
-            {
-                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
-                **limits,
-                "probability_of_stability": (probability, ".6g"),
-            }
-        )
-        drawn = csv_text(
-            {
-                **{
-                    f"{one.path} [SI]": (column, ".9g")
-                    for one, column in zip(self.parameters, self.values.T, strict=True)
-                },
-                "limit [mm]": (self.operating * 1e3, ".7g"),
-                "stable": (self.stable.tolist(), ""),
-            }
-        )
-        return {"uncertainty.csv": band, "samples.csv": drawn}
+        band = {
+            "spindle_speed [rpm]": Column(rpm(self.speeds), ".4f"),
+            **limits,
+            "probability_of_stability": Column(probability, ".6g"),
+        }
+        drawn = {
+            **{
+                f"{one.path} [SI]": Column(column, ".9g")
+                for one, column in zip(self.parameters, self.values.T, strict=True)
+            },
+            "limit [mm]": Column(self.operating * 1e3, ".7g"),
+            "stable": Column(self.stable),
+        }
+        return {"uncertainty": band, "samples": drawn}
 
 
 def _quantiles(limits: Array, levels: Sequence[float]) -> Array:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.given_values import text_given, values_given
-from chatter.io.result_files import SavedResult, csv_of_rows
+from chatter.io.result_files import SavedResult
+from chatter.io.result_tables import Column, Columns
 from chatter.studies.model import fingerprint, model_or_read, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
@@ -85,28 +86,24 @@ class WhatIf(SavedResult):
             "changes": self.sentences(),
         }
 
-    def tables(self) -> dict[str, str]:
-        """Content of whatif.csv: one row a point: values of the paths, then words and numbers."""
+    def tables(self) -> dict[str, Columns]:
+        """Columns of the table "whatif", a row a point: values, then words and numbers."""
         words = list(dict.fromkeys(key for one in self.outcomes for key in one.words))
         numbers = list(dict.fromkeys(key for one in self.outcomes for key in one.numbers))
-        rows = [[*(one.axis_label for one in self.variations), *words, *numbers]]
-        for point, outcome in zip(self.points, self.outcomes, strict=True):
-            given = [
-                _cell(one, index) for one, index in zip(self.variations, point.indices, strict=True)
-            ]
-            words_found = [outcome.words.get(key, "") for key in words]
-            found = [outcome.numbers.get(key) for key in numbers]
-            cells = ["" if one is None else f"{one:.9g}" for one in found]
-            rows.append([*given, *words_found, *cells])
-        return {"whatif.csv": csv_of_rows(rows)}
+        places = zip(*(point.indices for point in self.points), strict=True)
+        varied = {
+            one.axis_label: Column([_value(one, index) for index in indices], ".9g")
+            for one, indices in zip(self.variations, places, strict=True)
+        }
+        found = {key: Column([one.words.get(key, "") for one in self.outcomes]) for key in words}
+        computed = {key: Column(self.values(key), ".9g", infinite="inf") for key in numbers}
+        return {"whatif": {**varied, **found, **computed}}
 
 
-def _cell(one: Variation, index: int | None) -> str:
+def _value(one: Variation, index: int | None) -> str | float:
     if index is None:
         return AS_GIVEN
-    if one.numbers is None:
-        return one.values[index].label
-    return f"{one.numbers[index]:.9g}"
+    return one.values[index].label if one.numbers is None else one.numbers[index]
 
 
 def whatif(

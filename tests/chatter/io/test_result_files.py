@@ -6,7 +6,7 @@ import io
 import pytest
 
 from chatter.description.whole_files import write_whole
-from chatter.io.result_files import csv_of_rows, csv_text
+from chatter.io.result_tables import Column, csv_of_rows, csv_text
 
 
 @pytest.mark.parametrize(
@@ -21,7 +21,7 @@ from chatter.io.result_files import csv_of_rows, csv_text
     ],
 )
 def test_texts_are_no_formulas(hostile):
-    for text in (csv_of_rows([["name"], [hostile]]), csv_text({"name": ([hostile], "")})):
+    for text in (csv_of_rows([["name"], [hostile]]), csv_text({"name": Column([hostile])})):
         _, (cell,) = csv.reader(io.StringIO(text))
         assert cell == f"'{hostile}"
 
@@ -32,7 +32,7 @@ def test_numbers_and_words_stay_as_they_are(plain):
 
 
 def test_a_text_with_a_comma_stays_one_cell():
-    text = csv_text({"name": (["a, b"], ""), "depth [mm]": ([1.25], ".3g")})
+    text = csv_text({"name": Column(["a, b"]), "depth [mm]": Column([1.25], ".3g")})
     assert list(csv.reader(io.StringIO(text))) == [["name", "depth [mm]"], ["a, b", "1.25"]]
 
 
