@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from chatter.compile.cutter import force_law
@@ -14,6 +15,8 @@ from chatter.description.units import rpm, unit_factor
 #: modes with sliders of their own
 _MOST_MODES = 6
 _MOST_TEETH = 12
+#: heading of what a cut and a machine dampen by
+PROCESS = "Process damping, wear, friction"
 
 
 @dataclass(frozen=True)
@@ -155,7 +158,7 @@ def _direction(mode: Any) -> str:
 
 def _of_process(case: Case) -> Iterator[Slider]:
     """What a case may lack, such as process damping, begins at zero: what if it were there."""
-    given, contact, group = case.process_damping, case.contact, "Process damping, wear, friction"
+    given, contact, group = case.process_damping, case.contact, PROCESS
     if given is None or given.coefficient is not None:
         value, path = (0.0 if given is None else given.coefficient) * 1e-3, "coefficient"
         yield _from_zero(f"process_damping.{path}", group, "process damping", "N/mm", value, 100.0)
@@ -183,6 +186,21 @@ def _of_wear(case: Case, group: str) -> Iterator[Slider]:
         if law.coulomb is not None:
             path = f"friction.{name}.coulomb"
             yield _from_zero(path, group, f"friction {name}", "N", _rounded(law.coulomb), 100.0)
+
+
+def why_no_friction_slider(case: Case) -> str:
+    """Say where friction is stated, where a case has none of its own; empty where it has."""
+    if any(law.coulomb is not None for law in case.friction.values()):
+        return ""
+    if case.on_machine:
+        return (
+            f"friction: that of the machine, in {Path(case.structure.machine).name}; "
+            "structure.friction_amplitude is the vibration that it is taken at"
+        )
+    return (
+        'friction: the case has none; a table [friction.NAME] and friction = "NAME" of a mode, '
+        "in the TOML of the view Case, add it"
+    )
 
 
 #: unit -> dimension, for the factor to SI

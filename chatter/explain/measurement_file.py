@@ -181,7 +181,7 @@ def _of_one_kind(
 
 
 def _described(path: Path, run: Run, record: RecordDescription) -> Run:
-    """Run that names its described channels; InputError where its file lacks one."""
+    """Run of the channels that are used, and names those described; InputError where one lacks."""
     missing = [name for name in record.channels if name not in run.signals]
     if missing:
         raise InputError(
@@ -189,7 +189,8 @@ def _described(path: Path, run: Run, record: RecordDescription) -> Run:
             f"{', '.join(run.signals)}"
         )
     vectors = tuple(name for name, one in record.channels.items() if one.is_vector)
-    return replace(run, described=vectors)
+    signals = {name: one for name, one in run.signals.items() if name not in record.unused}
+    return replace(run, signals=signals, described=vectors)
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -279,16 +280,7 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
         raise InputError(f"{where}: file: {said}")
     file = path.parent / entry["file"]
     where = f"{where} ({file.name})"
-    overrides = {
-        _path_of(where, key, declared): value for key, value in entry.items() if key not in OWN_KEYS
-    }
-    try:
-        declared.patch(overrides)
-        cut_time = parse(entry.get("cut_time", 0.0), "time").value
-    except InputError as error:
-        raise InputError([f"{where}: {message}" for message in error.messages]) from error
-    except QuantityError as error:
-        raise InputError(f"{where}: cut_time: {error}") from error
+    overrides, cut_time = overrides_of_run(where, entry, declared)
     direction = _direction(where, entry)
     condition = str(entry.get("condition", ""))
     signals = read_signals(file, kind, direction)
@@ -301,6 +293,26 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
         name, signals = _window(where, name, entry, signals)
     axis = _axis(where, entry, declared)
     return Run(name, overrides, signals, cut_time, condition, direction, axis)
+
+
+def overrides_of_run(
+    where: str, entry: Mapping[str, Any], declared: Case
+) -> tuple[dict[str, Any], float]:
+    """Paths of the case and their values in a run, and the time that the tool had cut before, s.
+
+    InputError, which begins with what is given as `where`, for what the case cannot take.
+    """
+    overrides = {
+        _path_of(where, key, declared): value for key, value in entry.items() if key not in OWN_KEYS
+    }
+    try:
+        declared.patch(overrides)
+        cut_time = parse(entry.get("cut_time", 0.0), "time").value
+    except InputError as error:
+        raise InputError([f"{where}: {message}" for message in error.messages]) from error
+    except QuantityError as error:
+        raise InputError(f"{where}: cut_time: {error}") from error
+    return overrides, cut_time
 
 
 def _window(

@@ -134,7 +134,10 @@ def _channel() -> dict[str, Any]:
         "type": "object",
         "description": "What a channel of the files measures.",
         "properties": {
-            "quantity": {"enum": list(description.QUANTITIES), "description": "what it holds"},
+            "quantity": {
+                "enum": [*description.QUANTITIES, description.UNUSED],
+                "description": "what it holds; an unused one is left out, whatever its name tells",
+            },
             "on": {
                 "enum": list(description.SIDES),
                 "default": description.SIDES[0],

@@ -10,13 +10,18 @@ from typing import Any
 import panel as pn
 import tomlkit
 
+from chatter.app.workbench.page_words import in_words_of_the_page
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.assignments import parse_assignments
+from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.kinds.kind_list import KINDS
-from chatter.explain.records.description import QUANTITIES, SIDES, UNKNOWN, VECTORS
+from chatter.explain.measurement_file import overrides_of_run
+from chatter.explain.records.case_axes import USUAL
+from chatter.explain.records.description import QUANTITIES, REST, SIDES, UNKNOWN, UNUSED, VECTORS
 from chatter.io.signals import read_signals
 
-_BEGINS = ("rest", "air", "cut")
+_BEGINS = (REST, "air", "cut")
 #: key of a run -> heading, and the unit of a bare number
 _OF_A_RUN = {
     "spindle_speed": ("spindle speed", "rpm"),
@@ -35,10 +40,14 @@ class ChannelAssignment:
     ----------
     changed : callable
         Called when an assignment has changed.
+    declared : callable
+        Returns the case that runs differ from, or None where there is none yet.
     """
 
-    def __init__(self, changed: Callable[[], None]) -> None:
-        self._changed = changed
+    def __init__(
+        self, changed: Callable[[], None], declared: Callable[[], Case | None] = lambda: None
+    ) -> None:
+        self._changed, self._declared = changed, declared
         self.kind = pn.widgets.Select(label="Kind", options=list(KINDS), width=130)
         self.begins = pn.widgets.Select(label="Record begins", options=list(_BEGINS), width=130)
         self.angle = pn.widgets.Checkbox(label="spindle angle unknown", value=True)
@@ -65,9 +74,10 @@ class ChannelAssignment:
         for path in records:
             names |= dict.fromkeys(read_signals(path))
         # what was assigned stays: records come one by one
-        self.channels = {name: self.channels.get(name) or self._watched(_assignment())
+        self.channels = {name: self.channels.get(name) or self._watched(_assignment(name))
                          for name in names if not _is_time(name)}  # fmt: skip
-        self.runs = {path.name: self.runs.get(path.name) or RunFields(path.name, self._changed)
+        self.runs = {path.name: self.runs.get(path.name)
+                     or RunFields(path.name, self._changed, self._declared)
                      for path in records}  # fmt: skip
         self._show_rows()
 
@@ -83,7 +93,8 @@ class ChannelAssignment:
         self._rows.objects = [
             pn.pane.Markdown(
                 "What each channel measures, on which side, and along which direction of the case: "
-                "`x` (feed), `-y`, `0.7, 0.7, 0`, or `unknown`:"
+                "`x` (feed), `-y`, `0.7, 0.7, 0`, or `unknown`. A channel that measures nothing "
+                "here is left out:"
             ),
             *rows,
             pn.pane.Markdown("What each run differs in from the case, with units of your choice:"),
@@ -104,19 +115,24 @@ class ChannelAssignment:
             # one table holds all of them
             document[table] = next(iter(self.runs), "")
             return tomlkit.dumps(document)
-        assigned = {
+        given = {
             name: (quantity.value, side.value, direction.value.strip())
             for name, (quantity, side, direction) in self.channels.items()
-            if quantity.value
         }
-        if assigned:
+        # what a usual name tells needs no words, what it would tell wrongly does
+        assigned = {name: one for name, one in given.items() if one[0] and one != _usual(name)}
+        left_out = [name for name, one in given.items() if name in USUAL and not one[0]]
+        if assigned or self.begins.value != REST:
             record = {"begins": self.begins.value}
             if self.angle.value:
                 record["spindle_angle"] = UNKNOWN
             document["record"] = record
+        if assigned or left_out:
             channels = tomlkit.table()
             for name, (quantity, side, direction) in assigned.items():
                 channels[name] = _entry(name, quantity, side, direction)
+            for name in left_out:
+                channels[name] = _entry(name, UNUSED, "", "")
             document["channels"] = channels
         runs = tomlkit.aot()
         for name, fields in self.runs.items():
@@ -134,10 +150,19 @@ class RunFields:
         File of the run.
     changed : callable
         Called when a field has changed.
+    declared : callable
+        Returns the case that the run differs from, or None where there is none yet.
     """
 
-    def __init__(self, name: str, changed: Callable[[], None]) -> None:
-        self._name = name
+    def __init__(
+        self,
+        name: str,
+        changed: Callable[[], None],
+        declared: Callable[[], Case | None] = lambda: None,
+    ) -> None:
+        self._name, self._declared = name, declared
+        #: what is wrong with a field, below it
+        self.fault = wrapped_text(width=640, styles={"color": "#c62828"})
         self.fields = {
             key: pn.widgets.TextInput(label=heading, placeholder=unit, width=105)
             for key, (heading, unit) in _OF_A_RUN.items()
@@ -146,11 +171,24 @@ class RunFields:
             label="others", placeholder="mode=up; cut_time=10 s", width=170
         )
         for widget in (*self.fields.values(), self.others):
+            widget.param.watch(lambda _: self._check(), "value")
             widget.param.watch(lambda _: changed(), "value")
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the fields for the page."""
-        return pn.Column(pn.pane.Str(self._name), pn.Row(*self.fields.values(), self.others))
+        row = pn.Row(*self.fields.values(), self.others)
+        return pn.Column(pn.pane.Str(self._name), row, self.fault)
+
+    def _check(self) -> None:
+        """Say what the case cannot take; the fields are all right where there is no case yet."""
+        declared, told = self._declared(), ""
+        try:
+            values = self.values()
+            if declared is not None:
+                overrides_of_run(self._name, values, declared)
+        except InputError as error:
+            told = in_words_of_the_page(str(error))
+        self.fault.object = told
 
     def values(self) -> dict[str, Any]:
         """Return what differs by key, as a file states it; InputError for what is no assignment."""
@@ -169,13 +207,22 @@ class RunFields:
         return {**found, **parse_assignments(given)}
 
 
-def _assignment() -> tuple[Any, Any, Any]:
-    """Quantity, side and direction of a channel, to be chosen."""
+def _assignment(name: str) -> tuple[Any, Any, Any]:
+    """Quantity, side and direction of a channel: at first what its name tells."""
+    quantity, side, direction = _usual(name)
     return (
-        pn.widgets.Select(options=["", *QUANTITIES], width=160),
-        pn.widgets.Select(options=list(SIDES), width=115),
-        pn.widgets.TextInput(placeholder="direction", width=150),
+        pn.widgets.Select(options=["", *QUANTITIES], value=quantity, width=160),
+        pn.widgets.Select(options=list(SIDES), value=side, width=115),
+        pn.widgets.TextInput(placeholder="direction", value=direction, width=150),
     )
+
+
+def _usual(name: str) -> tuple[str, str, str]:
+    """Quantity, side and direction that a name tells; no quantity where it tells none."""
+    found = USUAL.get(name)
+    if found is None:
+        return "", SIDES[0], ""
+    return found.quantity, SIDES[0], "xyz"[found.direction.index(1.0)]
 
 
 def _entry(name: str, quantity: str, side: str, direction: str) -> Any:

@@ -21,7 +21,7 @@ from chatter.app.workbench.session import Session, checked_name, readable_extens
 from chatter.app.workbench.studies import run_measurement
 from chatter.app.workbench.upload import dropper
 from chatter.app.workbench.wrapped_text import wrapped_text
-from chatter.description.case import load
+from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.explain.measurement_file import read_measurement
 
@@ -79,7 +79,7 @@ class MeasurementView:
         self.write_button = pn.widgets.Button(label="Write measurement.toml")
         #: what is wrong with the assignment, beside it
         self.fault = wrapped_text(width=500, styles={"color": "#c62828"})
-        self.assignment = ChannelAssignment(self._assigned)
+        self.assignment = ChannelAssignment(self._assigned, self._declared)
         self._channels = pn.Card(
             pn.Row(self.assignment, pn.Column(self.fault, self.text, self.write_button)),
             title="Runs and channels", collapsed=True, min_width=1260,
@@ -178,6 +178,17 @@ class MeasurementView:
         if (path / _CASE).is_file() or not session.name:
             return _CASE
         return Path(os.path.relpath(session.path(session.name), path)).as_posix()
+
+    def _declared(self) -> Case | None:
+        """Case that the measurement on the page names; None where there is none without faults."""
+        folder = self._assigned_to
+        if folder is None:
+            return None
+        own = self._session.path(folder) / _CASE
+        try:
+            return load(own) if own.is_file() else self._session.case
+        except InputError:
+            return None
 
     def write(self) -> None:
         """Write measurement.toml as it stands in the text, and say what is wrong with it."""

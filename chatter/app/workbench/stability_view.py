@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from chatter.app.above_islands import above_islands
 from chatter.app.depth_axis import steady_end_of_depth_axis
 from chatter.app.live_case import LiveCase
-from chatter.app.sliders import Slider
+from chatter.app.sliders import PROCESS, Slider, why_no_friction_slider
 from chatter.app.workbench.compiling_note import reported_while_compiling
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.curves_in_frame import CLIPPED, FAST, keep_in_frame
@@ -112,6 +112,7 @@ class StabilityView:
         cards = [
             pn.Card(
                 *(self.sliders[one.path] for one in self._live.sliders if one.group == group),
+                *(self._notes() if group == PROCESS else ()),
                 title=group,
                 collapsed=index > 1,
                 width=330,
@@ -127,6 +128,11 @@ class StabilityView:
             self._motion_picture,
         )
         return pn.Row(pn.Column(*cards), pictures)
+
+    def _notes(self) -> list[Any]:
+        """What stands in place of a slider."""
+        told = why_no_friction_slider(self._live.case)
+        return [wrapped_text(told, width=300, styles={"color": "#555555"})] if told else []
 
     def make_room(self, is_beside: bool) -> None:
         """Leave room for a diagram beside this one, or take it back."""

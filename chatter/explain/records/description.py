@@ -15,6 +15,8 @@ FORCE, DISPLACEMENT, VELOCITY, ACCELERATION = "force", "displacement", "velocity
 VECTORS = (FORCE, DISPLACEMENT, VELOCITY, ACCELERATION)
 TACHO, SPINDLE_POWER = "once per revolution", "spindle power"
 DRIVE_TORQUE = "drive torque"
+#: of a channel that is left out, whatever its name would tell
+UNUSED = "unused"
 QUANTITIES = (*VECTORS, TACHO, SPINDLE_POWER, DRIVE_TORQUE, "sound pressure")
 SIDES = ("tool", "workpiece")
 REST, AIR, CUT = "rest", "air", "cut"
@@ -52,6 +54,7 @@ class RecordDescription:
     spindle_angle: str = ""  # "unknown", a channel, or empty: the usual column or zero at the start
     speed_tolerance: float = 0.0  # share of the declared spindle speed
     channels: Mapping[str, Channel] = field(default_factory=dict)
+    unused: tuple[str, ...] = ()  # channels that are left out
 
     @property
     def is_settled_only(self) -> bool:
@@ -89,7 +92,9 @@ def record_of(path: Path, content: Mapping[str, Any]) -> RecordDescription | Non
     tolerance = _tolerance(path, table.get("speed_tolerance", 0.0), problems)
     if problems:
         raise InputError(problems)
-    return RecordDescription(begins, angle, tolerance, channels)
+    unused = tuple(name for name, one in channels.items() if one.quantity == UNUSED)
+    used = {name: one for name, one in channels.items() if name not in unused}
+    return RecordDescription(begins, angle, tolerance, used, unused)
 
 
 def _tolerance(path: Path, given: Any, problems: list[str]) -> float:
@@ -131,7 +136,7 @@ def _channels(path: Path, given: Any, problems: list[str]) -> dict[str, Channel]
 def _channel(where: str, entry: Mapping[str, Any], problems: list[str]) -> Channel:
     quantity, side = entry.get("quantity"), entry.get("on", "tool")
     sign = entry.get("sign")
-    for key, value, allowed in (("quantity", quantity, QUANTITIES), ("on", side, SIDES)):
+    for key, value, allowed in (("quantity", quantity, (*QUANTITIES, UNUSED)), ("on", side, SIDES)):
         if value not in allowed:
             problems.append(f"{where}.{key}: {formatted(value)} is none of {', '.join(allowed)}")
     if sign not in (None, UNKNOWN):

@@ -18,6 +18,7 @@ from chatter.app.workbench.diagnostic_figure import MODEL_COLOURS, diagnostic_fi
 from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.studies import explanation_in_words
 from chatter.description.errors import InputError
+from chatter.explain.measurement_file import read_measurement
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
 from tests.places import EXAMPLES
 
@@ -155,6 +156,42 @@ def test_channels_are_assigned_by_hand(workbench, tmp_path):
         "cut_time": "3 s", "mode": "up",
     }  # fmt: skip
     assert (tmp_path / "measurements/set-1" / written["case"]).resolve() == tmp_path / "case.toml"
+
+
+def test_a_usual_name_shows_what_it_tells_and_is_left_out_once_emptied(workbench, tmp_path):
+    """A channel Fz that was left empty was compared all the same, as its name is a usual one."""
+    view = workbench.measurement
+    times = np.arange(0.0, 0.1, 1e-4)
+    rows = ["time [s],Fx [N],Fz [N],F9 [N]", *(f"{t},{np.sin(t)},{np.cos(t)},1" for t in times)]
+    view.take({"run01.csv": "\n".join(rows).encode()})
+    told = {name: [one.value for one in row] for name, row in view.assignment.channels.items()}
+    assert told["Fz"] == ["force", "tool", "z"]
+    assert told["F9"] == ["", "tool", ""]
+    assert "channels" not in tomlkit.parse(view.text.value)
+    view.assignment.channels["Fz"][0].value = ""
+    view.write()
+    folder = tmp_path / "measurements" / "set-1"
+    written = tomlkit.parse((folder / "measurement.toml").read_text())
+    assert written["channels"].unwrap() == {"Fz": {"quantity": "unused"}}
+    (run,) = read_measurement(folder).runs
+    assert sorted(run.signals) == ["F9", "Fx", "time"]
+    # where a record begins is said of usual names too
+    view.assignment.begins.value = "air"
+    assert tomlkit.parse(view.text.value)["record"]["begins"] == "air"
+
+
+def test_a_bad_unit_of_a_run_is_told_at_its_fields(workbench):
+    """It was told once *Compare* was pressed."""
+    view = workbench.measurement
+    view.take({"run01.csv": record("F1")})
+    run = view.assignment.runs["run01.csv"]
+    run.fields["axial_depth"].value = "2 kg"
+    assert "axial_depth" in run.fault.object
+    assert "kg" in run.fault.object
+    run.fields["axial_depth"].value = "2 mm"
+    assert run.fault.object == ""
+    run.others.value = "flute=3"
+    assert "flute is not a key of a run" in run.fault.object
 
 
 def test_a_direction_is_an_axis_with_its_sign_or_three_numbers(workbench):

@@ -8,6 +8,7 @@ from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
 import chatter
+from chatter.app.sliders import case_sliders, why_no_friction_slider
 from chatter.app.workbench.legend_samples import put_samples_into_legend, set_style
 from chatter.app.workbench.page_words import in_words_of_the_page
 from chatter.app.workbench.picture_files import legend_above, picture_file
@@ -74,3 +75,16 @@ def test_the_sign_of_a_point_has_its_colour():
     (sample,) = drawn.legend[0].items[0].renderers
     assert sample.data_source.data["colour"] == ["red"]
     assert sample.data_source.data["marker"] == ["triangle"]
+
+
+def test_a_case_without_friction_says_how_to_add_it():
+    """The card called *friction* held no slider of it and no word."""
+    case = chatter.load(EXAMPLES / "two-degrees-of-freedom" / "case.toml")
+    assert "friction: the case has none" in why_no_friction_slider(case)
+    law = {"law": "coulomb-stribeck", "coulomb": "5 N", "static": "5 N",
+           "stribeck_velocity": "1 mm/s"}  # fmt: skip
+    stated = case.patch({"friction.guide": law, "structure.mode[0].friction": "guide"})
+    assert why_no_friction_slider(stated) == ""
+    assert "friction.guide.coulomb" in {one.path for one in case_sliders(stated)}
+    machine = chatter.load(EXAMPLES / "friction-amplitude" / "case.toml")
+    assert "in machine.toml;" in why_no_friction_slider(machine)
