@@ -35,6 +35,11 @@ _CANCELLED = {
     "explain": "cancelled; Explain goes on from the predictions made so far, if the records and "
     "the case stay the same",
 }
+#: what is said of files that were dropped after others under one name
+_JOINED = (
+    "the files dropped last are with those that were there before: a set of its own needs a name "
+    "of its own in the field above before it is dropped"
+)
 _OPEN_CASE = "the open case"
 _DECLARED = "the one that it names"
 
@@ -61,6 +66,9 @@ class MeasurementView:
         self.name = pn.widgets.TextInput(label="Name of the new folder", value="set-1", width=220)
         self.upload = dropper(self.take, "Records, with measurement.toml where there is one")
         self.upload.begun = self._drop_begins
+        self.upload.arriving = self._file_arrives
+        #: whether the files of a drop go to those of an earlier one
+        self._joins = False
         #: folder that the files of a drop go to, whatever is begun while they come
         self._dropped_into: str | None = None
         self._proposed = ""  # name of the new folder that nobody typed
@@ -142,7 +150,12 @@ class MeasurementView:
         self.refresh()
         self.folder.value = folder
         self._show()
-        self._say_what_is_wrong(folder, f"{_counted(len(files))} in {folder}")
+        told = self._what_is_wrong(folder) or f"{_counted(len(files))} in {folder}"
+        self.work.show_message(f"{told}\n{_JOINED}" if self._joins else told)
+
+    def _file_arrives(self, file: str, share: float) -> None:
+        """Say that a file is on its way, and how much of it has come."""
+        self.work.show_message(f"{file} is arriving ({100.0 * share:.0f} %) ...")
 
     def _new_folder(self) -> str:
         """Folder of what is dropped next."""
@@ -158,6 +171,7 @@ class MeasurementView:
         late = before is not None and not named and self.upload.pause() < _LATE
         if not (late and not self._session.path(f"{before}/{file}").exists()):
             self._dropped_into = self._new_folder()
+        self._joins = (self._session.path(str(self._dropped_into)) / _FILE).is_file()
 
     def _draft(self, folder: str) -> None:
         """Write a first measurement.toml: files come one by one, and each is a run."""
@@ -197,16 +211,15 @@ class MeasurementView:
             return
         self._drafts.discard(name)
         self._write_text(name)
-        self._say_what_is_wrong(name, f"{name}/{_FILE} is written")
+        self.work.show_message(self._what_is_wrong(name) or f"{name}/{_FILE} is written")
 
-    def _say_what_is_wrong(self, folder: str, else_say: str) -> None:
-        """Say what is wrong with the description of a measurement."""
+    def _what_is_wrong(self, folder: str) -> str:
+        """Return what is wrong with the description of a measurement; empty where it is sound."""
         try:
             read_measurement(self._session.path(folder))
         except InputError as error:
-            self.work.show_message(str(error))
-        else:
-            self.work.show_message(else_say)
+            return str(error)
+        return ""
 
     def start(self, name: str) -> None:
         """Compare or explain the measurement that is chosen."""

@@ -26,6 +26,8 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
         self._last_part = -_PAUSE
         #: called with the name of the first file of a drop as it begins to come
         self.begun: Callable[[str], None] = lambda _: None
+        #: called with the name of a file that is not complete yet and the share that has come
+        self.arriving: Callable[[str, float], None] = lambda *_: None
 
     def pause(self) -> float:
         """Time since the last part of a file came, s."""
@@ -67,6 +69,9 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
             self._file_buffer.pop(name, None)
             return
         super()._process_event({**event, "data": data} if isinstance(event, dict) else event)
+        chunk, parts = data.get("chunk"), data.get("total_chunks")
+        if name in self._file_buffer and isinstance(chunk, int) and isinstance(parts, int):
+            self.arriving(name, min(1.0, chunk / max(1, parts)))
 
 
 def dropper(take: Callable[[dict[str, bytes]], None], label: str) -> BoundedFileDropper:

@@ -265,6 +265,32 @@ def test_files_of_one_drop_stay_together_when_work_begins_meanwhile(workbench, t
     assert (measured / "typed" / "run04.csv").is_file()
 
 
+def test_a_large_file_is_told_to_arrive_and_a_later_drop_to_join(workbench):
+    """The page stood still while a file came; a second set joined the first without a word."""
+    view, told = workbench.measurement, []
+    view.work.message.param.watch(lambda event: told.append(event.new), "object")
+
+    def send(name, parts):
+        for number, part in enumerate(parts, start=1):
+            data = {"name": name, "chunk": number, "total_chunks": len(parts), "data": part,
+                    "type": "text/csv"}  # fmt: skip
+            view.upload._process_event(SimpleNamespace(event_name="upload_event", data=data))
+
+    content = record("F1")
+    send("run01.csv", [content[:400], content[400:800], content[800:1600], content[1600:]])
+    arriving = [one for one in told if "is arriving" in one]
+    assert arriving[0] == "run01.csv is arriving (25 %) ..."
+    assert len(arriving) == 3
+    assert "dropped last" not in view.work.message.object
+    send("run02.csv", [content])  # of the same drop
+    assert "dropped last" not in view.work.message.object
+    view.upload._last_part -= 60.0
+    send("run03.csv", [content])
+    assert "the files dropped last are with those that were there before" in (
+        view.work.message.object
+    )
+
+
 def test_judged_cuts_are_a_table_of_their_case(workbench, tmp_path):
     view = workbench.measurement
     own = (tmp_path / "case.toml").read_bytes()
