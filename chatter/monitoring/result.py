@@ -138,7 +138,7 @@ class DetectedChatter(NotebookResult):
         notes = []
         revolution = self.evidence.revolution
         if self.refuting_speed is not None and self.given is not None:
-            notes.append(in_words_of(self.refuting_speed, self.given))
+            notes.append(in_words_of(self.refuting_speed, self.given, self.evidence.teeth))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given
             if abs(ratio - 1.0) > _DIFFERS:
@@ -168,14 +168,25 @@ class DetectedChatter(NotebookResult):
         )
 
 
-def in_words_of(other: OtherSpeed, stated: float) -> str:
+def in_words_of(other: OtherSpeed, stated: float, teeth: int | None) -> str:
     """That the lines speak for another speed than the stated one, Hz."""
     return (
         f"the record speaks for {60.0 * other.frequency:.0f} rpm, {60.0 * stated:.0f} rpm were "
-        f"stated: its lines are {other.spacing:.1f} Hz apart. That would be an override of "
-        f"{other.frequency / stated:.0%}, another cut, or another number of teeth: state "
-        "--spindle-speed and --teeth as they were"
+        f"stated: its lines are {other.spacing:.1f} Hz apart{_if_alike(other, teeth)}. That would "
+        f"be an override of {other.frequency / stated:.0%}, another cut, or another number of "
+        "teeth: state --spindle-speed and --teeth as they were"
     )
+
+
+def _if_alike(other: OtherSpeed, teeth: int | None) -> str:
+    """Other speeds that have lines so far apart, where teeth are alike."""
+    if teeth is None:
+        return ""
+    each = [60.0 * other.spacing / parts for parts in range(teeth, 0, -1) if teeth % parts == 0]
+    rest = [f"{one:.0f}" for one in each if abs(one / (60.0 * other.frequency) - 1.0) > _DIFFERS]
+    if not rest:
+        return ""
+    return f", which may also be {' or '.join(rest)} rpm where some of its {teeth} teeth are alike"
 
 
 def _by(revolution) -> str:

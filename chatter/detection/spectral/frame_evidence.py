@@ -30,7 +30,13 @@ from chatter.detection.spectral.revolution_frequency import (
     over_frames,
     stated_alone,
 )
-from chatter.detection.spectral.spectra import Frames, above_floor, frames_of, mean_of
+from chatter.detection.spectral.spectra import (
+    RATIO_AT_REST,
+    Frames,
+    above_floor,
+    frames_of,
+    mean_of,
+)
 from chatter.detection.spectral.stated_speed import REFUTED, LinesOfRecord, OtherSpeed
 
 Array = NDArray[np.float64]
@@ -52,8 +58,6 @@ _HOP, _MOST_FRAMES = 0.25, 2000.0
 _OF_MACHINE, _OF_CUT = 0.5, 0.8
 #: logarithm above the floor from which a bin counts to a line
 _STANDS_OUT = 2.0
-#: least ratio of a line to what is there at rest
-RATIO_AT_REST = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,15 +129,16 @@ def evidence_of(
     """
     frames, revolution, other = _with_speed(recording, spindle_frequency, teeth)
     found = _with_lines(recording, frames, revolution, teeth)
-    if other is not None and other.relation == REFUTED and _is_there_at_rest(found, other):
-        return found
-    return replace(found, other_speed=other)
+    if other is None or other.relation != REFUTED or not _may_be_there_at_rest(found, other):
+        return replace(found, other_speed=other)
+    return replace(found, other_speed=other if _cut_speaks_for(found, other) else None)
 
 
-def _is_there_at_rest(evidence: Evidence, other: OtherSpeed) -> bool:
-    """Whether lines that speak for another speed are there without a cut: of a bearing, a fan.
+def _may_be_there_at_rest(evidence: Evidence, other: OtherSpeed) -> bool:
+    """Whether lines that speak for another speed may be there without a cut: of a bearing, a fan.
 
-    Most lines a spacing apart are there then, or what the cut adds is on the stated harmonics.
+    Most lines a spacing apart are there then, or what the cut adds is on the stated harmonics. A
+    spindle that turns in the air has its lines too, and one line alone may be on any harmonics.
     """
     if evidence.rest is None:
         return False
@@ -142,8 +147,22 @@ def _is_there_at_rest(evidence: Evidence, other: OtherSpeed) -> bool:
     comb = Comb(other.spacing, other.spacing, 0.0, frames.half_width)
     if share_of_harmonics(above, frames.frequency, comb) >= _OF_MACHINE:
         return True
-    cut = ~evidence.idle & ~evidence.silent
-    return share_on_harmonics(evidence, cut) >= _OF_CUT
+    return share_on_harmonics(evidence, _cuts(evidence)) >= _OF_CUT
+
+
+def _cut_speaks_for(evidence: Evidence, other: OtherSpeed) -> bool:
+    """Whether those lines that the cut adds speak for another speed than the stated one."""
+    frames, rows = evidence.frames, _cuts(evidence)
+    cut = frames._replace(
+        time=frames.time[rows], power=frames.power[rows], above=frames.above[rows]
+    )
+    lines = LinesOfRecord(cut, evidence.revolution.mean, evidence.teeth, evidence.rest)
+    return lines.speak_for(other)
+
+
+def _cuts(evidence: Evidence) -> NDArray[np.bool_]:
+    """Frames in which something is cut, where some are at rest."""
+    return ~evidence.idle & ~evidence.silent
 
 
 def share_on_harmonics(evidence: Evidence, rows: slice | NDArray[np.bool_]) -> float:

@@ -13,9 +13,9 @@ from chatter.detection.spectral.chatter_lines import (
     strongest_line,
 )
 from chatter.detection.spectral.envelope import envelope_kurtosis
-from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence
+from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
-from chatter.detection.spectral.spectra import above_floor, mean_of
+from chatter.detection.spectral.spectra import RATIO_AT_REST, above_floor, mean_of
 
 #: standard deviations of the sidebands of a cut, and where all else is of a cut
 SIDEBANDS, _FEWER_SIDEBANDS = 5.0, 4.0

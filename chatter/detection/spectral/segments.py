@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.detection.spectral.chatter_lines import is_half_tooth, tooth_powers
-from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence, finer_evidence
+from chatter.detection.spectral.frame_evidence import Evidence, finer_evidence
 from chatter.detection.spectral.line_of_cut import (
     CUTS,
     KNOWN,
@@ -22,6 +22,7 @@ from chatter.detection.spectral.line_of_cut import (
     sidebands_of,
 )
 from chatter.detection.spectral.several_lines import LinesOfCut, all_lines_of_cut
+from chatter.detection.spectral.spectra import RATIO_AT_REST
 
 CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.detection.spectral.chatter_lines import LOWEST_ORDER, Comb
-from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence
+from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.line_of_cut import (
     CUTS_CLEARLY,
     cut_significance,
@@ -17,7 +17,7 @@ from chatter.detection.spectral.line_of_cut import (
     line_wanders,
     may_be_of_mains,
 )
-from chatter.detection.spectral.spectra import mean_of
+from chatter.detection.spectral.spectra import RATIO_AT_REST, mean_of
 
 Array = NDArray[np.float64]
 

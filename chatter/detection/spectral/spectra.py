@@ -23,6 +23,8 @@ _PADDING = 2
 HALF_WIDTH = 2.0
 #: width of the noise floor's median, in line half widths
 _FLOOR_WIDTH = 24.0
+#: least ratio of a line to what is there at rest
+RATIO_AT_REST = 10.0
 #: power over that of the largest bin under which a spectrum is that of the window, or rounding
 _ROUNDING = 1e-7
 

@@ -25,7 +25,7 @@ from chatter.detection.spectral.revolution_frequency import (
     slowest_of,
     spacing_scores,
 )
-from chatter.detection.spectral.spectra import Frames, mean_of
+from chatter.detection.spectral.spectra import RATIO_AT_REST, Frames, mean_of
 
 Array = NDArray[np.float64]
 
@@ -89,14 +89,22 @@ class LinesOfRecord:
     stated : float
         Hz.
     teeth : int or None
+    rest : (b,) array of float or None
+        Power of what is there without the cut: lines that do not exceed it by far are none.
     """
 
-    def __init__(self, frames: Frames, stated: float, teeth: int | None) -> None:
-        self._frames = frames
+    def __init__(
+        self, frames: Frames, stated: float, teeth: int | None, rest: Array | None = None
+    ) -> None:
         self._stated = stated
         self._teeth = teeth
-        self._autocorrelation = line_autocorrelations(frames).sum(axis=0)
         self._power, self._above = mean_of(frames, slice(None))
+        if rest is not None:
+            of_cut = self._power > RATIO_AT_REST * rest
+            self._above = np.where(of_cut, self._above, 0.0)
+            frames = frames._replace(above=np.where(of_cut, frames.above, 0.0))
+        self._frames = frames
+        self._autocorrelation = line_autocorrelations(frames).sum(axis=0)
         self._lines = np.clip(self._above - _COUNTS, 0.0, _AT_MOST)
 
     def near(self, frequency: float, within: float = ABOUT_GIVEN) -> Explanation:
@@ -141,6 +149,14 @@ class LinesOfRecord:
         if _is_multiple(spacing.frequency, own.frequency) and speed > own.frequency:
             return OtherSpeed(speed, spacing.frequency, FASTER)
         return None
+
+    def speak_for(self, other: OtherSpeed) -> bool:
+        """Whether the lines, as far apart as those of another speed, fit it far better."""
+        bounds = other.spacing * (1.0 - _SAME), other.spacing * (1.0 + _SAME)
+        spacing = best_spacing(self._autocorrelation, self._frames.step, *bounds)
+        own = self.near(self._stated)
+        each = [self._explanation(spacing, parts) for parts in self._divisors()]
+        return any(self._is_better(one, own) for one in each)
 
     def _is_better(self, one: Explanation, other: Explanation) -> bool:
         """Whether one speed explains the lines far better, or without chatter as well."""

@@ -108,6 +108,39 @@ def test_idle_parts_stay_idle_at_a_wrong_speed():
     assert found.segments[0].end == pytest.approx(1.5, abs=0.3)
 
 
+@pytest.mark.parametrize(
+    # five seconds of a slow spindle whose teeth may be alike: lines of either lie everywhere
+    ("revolution", "teeth", "verdicts"),
+    [(50.0, 4, {"chatter"}), (26.0, 6, {"chatter", "not judged"}), (120.0, 3, {"chatter"})],
+)
+def test_chatter_on_a_harmonic_of_the_stated_speed_is_found_at_that_of_the_lines(
+    revolution, teeth, verdicts
+):
+    # after a spindle that turns in the air, whose lines are those of the true speed too
+    random = np.random.default_rng(7)
+    time = clock(5.0)
+    frequency = (round(930.0 / revolution) + 0.37) * revolution
+    line = chatter_line(random, time, frequency, teeth * revolution)
+    cut = forced_cut(random, time, revolution, teeth, 0.1) + 4.0 * line
+    turns = 0.1 * forced_cut(random, time, revolution, 1, 0.0)
+    values = during(time, 1.5, 9.0) * cut + turns + noise(random, time, 0.03)
+    recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+    for factor in (0.7, 1.25):
+        stated = frequency / round(frequency / (factor * revolution))
+        found = detected(recording, stated, teeth)
+        assert found.verdict in verdicts, (factor, found.segments)
+        if found.verdict == "chatter":
+            assert found.chatter_frequency == pytest.approx(frequency, rel=2e-3)
+        assert found.refuting_speed.frequency == pytest.approx(revolution, rel=5e-3)
+
+
+def test_speeds_that_alike_teeth_leave_open_are_named():
+    found = detected(cut(50.0, 4, 0.0, chatters=False), 33.0, 4)
+    assert "200.0 Hz apart" in found.notes[0]
+    assert "rpm where some of its 4 teeth are alike" in found.notes[0]
+    assert "3000" in found.notes[0]
+
+
 @pytest.mark.parametrize(("depth", "verdict"), [("1 mm", "stable"), ("3 mm", "chatter")])
 def test_a_simulated_cut_is_stable_at_no_wrong_speed(depth, verdict):
     case = chatter.load(EXAMPLES / "chattering-cut" / "case.toml")
