@@ -14,7 +14,7 @@ from chatter.detection.spectral.chatter_lines import (
 )
 from chatter.detection.spectral.envelope import envelope_kurtosis
 from chatter.detection.spectral.frame_evidence import Evidence
-from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
+from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN, VARIATION
 from chatter.detection.spectral.spectra import RATIO_AT_REST, above_floor, mean_of
 
 #: standard deviations of the sidebands of a cut, and where all else is of a cut
@@ -156,18 +156,39 @@ def is_low_harmonic_nearby(evidence: Evidence, rows: slice, line: float) -> bool
     """Whether a speed some percent off makes the line a low harmonic, and has as clear ones."""
     comb = evidence.comb((rows.start + rows.stop - 1) // 2)
     order = max(round(line / comb.tooth), 1)
-    tooth = line / order
-    if order > _LOW_ORDER or abs(tooth / comb.tooth - 1.0) > ABOUT_GIVEN:
+    if order > _LOW_ORDER or abs(line / (order * comb.tooth) - 1.0) > ABOUT_GIVEN:
         return False
+    own, others = _clarity_as_harmonic(evidence, rows, line, order)
+    return others >= own
+
+
+def is_harmonic_of_changed_speed(evidence: Evidence, rows: slice, line: float) -> bool:
+    """Whether a speed as a change of load makes it has the line, and clearer ones, as harmonics."""
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    order = max(round(line / comb.tooth), 1)
+    if abs(line / (order * comb.tooth) - 1.0) > VARIATION:
+        return False
+    own, others = _clarity_as_harmonic(evidence, rows, line, order)
+    return others > max(own, CUTS)
+
+
+def _clarity_as_harmonic(
+    evidence: Evidence, rows: slice, line: float, order: int
+) -> tuple[float, float]:
+    """Significance of the harmonics of the teeth, and of those of which the line is one."""
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    tooth = line / order
     other = comb._replace(revolution=comb.revolution * tooth / comb.tooth, tooth=tooth)
     power, above = mean_of(evidence.frames, rows)
     if evidence.rest is not None:  # lines of a bearing are there without the cut
         above = np.where(power > RATIO_AT_REST * evidence.rest, above, 0.0)
     frequency = evidence.frames.frequency
-    own = harmonics_significance(above, frequency, comb)
     # of the line and its multiples the other speed would be confirmed by what it is to explain
-    others = harmonics_significance(above, frequency, other, order if order > 1 else 0)
-    return others >= own
+    left_out = order if order > 1 else 0
+    return (
+        harmonics_significance(above, frequency, comb),
+        harmonics_significance(above, frequency, other, left_out),
+    )
 
 
 def may_be_of_mains(evidence: Evidence, line: float) -> bool:

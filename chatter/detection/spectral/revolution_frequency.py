@@ -94,14 +94,14 @@ class Revolution(NamedTuple):
 
 
 #: standard deviations from which a spacing is believed, alone and beside a given speed
-CERTAIN, _PLAUSIBLE = 10.0, 8.0
+CERTAIN, PLAUSIBLE = 10.0, 8.0
 #: range about a given speed in which the true one is searched; the near part of it is preferred
 #: unless the rest scores better by a factor
-ABOUT_GIVEN, _NEAR_GIVEN, _BETTER = 0.12, 0.015, 1.4
+ABOUT_GIVEN, _NEAR_GIVEN, BETTER = 0.12, 0.015, 1.4
 #: relative uncertainty of a frequency given, read off a spectrum, and by a tacho
 _GIVEN, _READ, _BY_TACHO = 5e-3, 1e-3, 5e-4
 #: relative variation of the speed from frame to frame that is followed, and frames taken together
-_VARIATION, _TOGETHER = 0.015, 1
+VARIATION, _TOGETHER = 0.015, 1
 #: share of the power of a line that a fraction of the spacing has to hold; what its frequency is
 #: known to, of a line width and relative by that of the spacing
 _LARGE, _LINE, _SPACING = 0.1, 0.2, 1.5e-4
@@ -127,9 +127,9 @@ def mean_about_given(long: Frames, given: float, teeth: int) -> float | None:
     near = best_spacing(
         everywhere, long.step, given * (1.0 - _NEAR_GIVEN), given * (1.0 + _NEAR_GIVEN), teeth
     )
-    if not found.significance > _PLAUSIBLE:
+    if not found.significance > PLAUSIBLE:
         return None
-    if found.score > _BETTER * near.score and _explains_more(long, found, near, teeth):
+    if found.score > BETTER * near.score and explains_more(long, found, near, teeth):
         return found.frequency
     return near.frequency
 
@@ -139,7 +139,7 @@ def stated_alone(frames: Frames, given: float) -> Revolution:
     return Revolution(np.full(frames.time.size, given), _GIVEN, "given", given)
 
 
-def _explains_more(frames: Frames, one: Spacing, other: Spacing, teeth: int) -> bool:
+def explains_more(frames: Frames, one: Spacing, other: Spacing, teeth: int) -> bool:
     """Whether harmonics of one spacing stand out more: chatter lines lie as far from each other."""
     _, above = mean_of(frames, slice(None))
     first, second = (
@@ -207,7 +207,7 @@ def _has_own_lines(autocorrelation: Array, step: float, spacing: float, parts: i
     own = np.interp(at / step, bins, autocorrelation).mean()
     shifts = np.linspace(0.2, 0.8, 40) * spacing / parts
     others = np.array([np.interp((at + s) / step, bins, autocorrelation).mean() for s in shifts])
-    return bool(own > others.mean() + _PLAUSIBLE * max(float(others.std()), 1e-12))
+    return bool(own > others.mean() + PLAUSIBLE * max(float(others.std()), 1e-12))
 
 
 def over_frames(frames: Frames, mean: float, teeth: int) -> Revolution:
@@ -217,7 +217,7 @@ def over_frames(frames: Frames, mean: float, teeth: int) -> Revolution:
     each = line_autocorrelations(frames)
     for row in range(count):
         together = each[max(row - _TOGETHER, 0) : row + _TOGETHER + 1].sum(axis=0)
-        found[row] = _of_frames(together, frames.step, mean, teeth)
+        found[row] = speed_of_frames(together, frames.step, mean, teeth)
     certain = np.isfinite(found)
     if not certain.any():
         return Revolution(np.full(count, mean), _READ, source, mean)
@@ -225,14 +225,14 @@ def over_frames(frames: Frames, mean: float, teeth: int) -> Revolution:
     return Revolution(followed, _READ, source, mean)
 
 
-def _of_frames(autocorrelation: Array, step: float, mean: float, teeth: int) -> float:
-    """Spacing near the mean, nan where none is certain; the mean where nothing is much better."""
+def speed_of_frames(autocorrelation: Array, step: float, mean: float, teeth: int) -> float:
+    """Spacing near the mean, Hz: the mean where none is much better, nan where none is certain."""
     bounds = mean * (1.0 - ABOUT_GIVEN), mean * (1.0 + ABOUT_GIVEN)
     found = best_spacing(autocorrelation, step, *bounds, teeth)
-    if not found.significance > _PLAUSIBLE or abs(found.frequency / mean - 1.0) > _VARIATION:
+    if not found.significance > PLAUSIBLE or abs(found.frequency / mean - 1.0) > VARIATION:
         return math.nan
     own = best_spacing(autocorrelation, step, mean * (1.0 - _READ), mean * (1.0 + _READ), teeth)
-    return own.frequency if found.score < _BETTER * own.score else found.frequency
+    return own.frequency if found.score < BETTER * own.score else found.frequency
 
 
 def from_tacho(tacho: Array, time_step: float, start: float, frames: Frames) -> Revolution | None:

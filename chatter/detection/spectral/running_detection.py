@@ -16,13 +16,15 @@ from chatter.detection.spectral.activity import are_cutting, idle_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
 from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.judged_together import JudgedTogether, judged_together
-from chatter.detection.spectral.line_of_cut import FRAMES, is_line_of_cut
-from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.revolution_frequency import (
-    Revolution,
-    best_spacing,
-    line_autocorrelations,
+from chatter.detection.spectral.line_of_cut import (
+    FRAMES,
+    is_harmonic_of_changed_speed,
+    is_line_of_cut,
+    line_of,
 )
+from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.revolution_frequency import VARIATION, Revolution
+from chatter.detection.spectral.running_speed import RunningSpeed
 from chatter.detection.spectral.segments import (
     BEGINS,
     CHATTER,
@@ -40,11 +42,10 @@ Array = NDArray[np.float64]
 _SHORTEST_HOP = 0.02
 #: revolutions of the window, and its least length, s
 _REVOLUTIONS, _SHORTEST = 24.0, 0.25
-#: windows that the speed is read off, one every quarter of a window
-_WINDOWS, _QUARTER = 24, 4
-#: relative range about the given speed in which the lines correct it, the significance that it
-#: takes, and the uncertainty of what is read so
-_RANGE, _SIGNIFICANT, _UNCERTAINTY = 0.015, 8.0, 1e-3
+#: windows that are remembered begin a quarter of one apart
+_QUARTER = 4
+#: relative uncertainty of a speed that is read off the lines
+_UNCERTAINTY = 1e-3
 #: such windows that a verdict rests on
 _HISTORY = 48
 #: such windows from one look at them together to the next, and the time, s, at the least
@@ -100,14 +101,14 @@ class RunningDetection:
         Of any length: its channels, its step of time and what they are of. Its samples are not
         taken.
     spindle_frequency : float
-        Hz, right within 12 %: the lines correct it, at once where it is right within 1.5 %.
+        Hz, right within 12 %: the lines correct it.
     teeth : int or None
     """
 
     def __init__(self, start: Recording, spindle_frequency: float, teeth: int | None) -> None:
         self._start = start
-        #: Hz: as it is read off the lines, about what is taken for given, and as it was stated
-        self._speed = self._given = self._stated = spindle_frequency
+        self._stated = spindle_frequency
+        self._speed = RunningSpeed(spindle_frequency, teeth or 1)
         self._teeth = teeth
         hop = max(1.0 / spindle_frequency, _SHORTEST_HOP)
         self._hop = max(round(hop / start.time_step), 1)
@@ -116,7 +117,6 @@ class RunningDetection:
         self._samples = np.empty((0, len(start.channels)))
         self._taken = 0
         self._quarter = max(round(self._window / (self._hop * _QUARTER)), 1)
-        self._autocorrelations: deque[Array] = deque(maxlen=_WINDOWS)
         self._history: deque[_Window] = deque(maxlen=_HISTORY)
         self._levels: deque[float] = deque(maxlen=_LEVELS)
         self._count = 0
@@ -167,8 +167,8 @@ class RunningDetection:
         if verdict != CHATTER:
             frequency = math.nan
         return Observation(
-            time, verdict, frequency, share, self._speed,
-            self._speed_is_refuted, self._given != self._stated,
+            time, verdict, frequency, share, self._speed.current,
+            self._speed_is_refuted, self._speed.mean != self._stated,
         )  # fmt: skip
 
     def _verdict_of(self, window: _Window) -> str:
@@ -187,7 +187,20 @@ class RunningDetection:
         evidence, rows = self._evidence(window)
         if chattered and evidence.rest is None and self._is_old(rows):
             return CHATTER
+        if not chattered and self._may_be_of_speed(evidence, rows):
+            return NOT_JUDGED
         return CHATTER if is_line_of_cut(evidence, rows) else NOT_JUDGED
+
+    def _may_be_of_speed(self, evidence: Evidence, rows: slice) -> bool:
+        """Whether a new line may be a harmonic of another speed, of the spindle or of a moment.
+
+        A spindle slows down as the load comes on, and turns faster as it goes; chatter lasts.
+        """
+        if self._speed.is_contradicted:
+            return True
+        is_new = rows.stop - rows.start < FRAMES
+        line = line_of(evidence, rows).frequency
+        return is_new and is_harmonic_of_changed_speed(evidence, rows, line)
 
     def _is_old(self, rows: slice) -> bool:
         """Whether too little is remembered of the time before a line to tell it from the line."""
@@ -204,14 +217,16 @@ class RunningDetection:
         above = above_floor(power, frequency, recording.duration)
         middle = np.array([begin + 0.5 * recording.duration])
         frames = Frames(middle, frequency, power, above, recording.duration)
-        if self._count % self._quarter == 0:
-            self._follow_speed(frames)
+        level = _level(values)
+        is_kept = self._count % self._quarter == 0
+        if is_kept and self._speed.take(frames, level, self._idle_level):
+            self._look_again()
         line = strongest_line(power[0], above[0], frequency, self._comb(frames))
-        return _Window(recording, frames, spectra, line, _level(values))
+        return _Window(recording, frames, spectra, line, level)
 
     def _comb(self, frames: Frames) -> Comb:
-        tooth = (self._teeth or 1) * self._speed
-        return Comb(self._speed, tooth, _UNCERTAINTY, frames.half_width)
+        speed = self._speed.current
+        return Comb(speed, (self._teeth or 1) * speed, _UNCERTAINTY, frames.half_width)
 
     def _remember(self, window: _Window) -> None:
         """Keep windows a quarter of their length apart."""
@@ -225,8 +240,9 @@ class RunningDetection:
         if self._together is not None and self._together.done():
             found = self._together.result()
             self._speed_is_refuted = found.speed_is_refuted
-            if abs(found.spindle_frequency / self._given - 1.0) > _RANGE:
-                self._take_speed(found.spindle_frequency)
+            if abs(found.spindle_frequency / self._speed.mean - 1.0) > VARIATION:
+                self._speed.go_on_with(found.spindle_frequency)
+                self._look_again()
             if not math.isnan(found.chatter_frequency):
                 power = self._power_near(found.chatter_frequency)
                 self._held = _Held(found.chatter_frequency, found.share, power)
@@ -238,7 +254,7 @@ class RunningDetection:
         if self._together is None and (self._count // self._quarter + 1) % every == 0:
             joined = _joined([one.recording for one in self._history])
             self._together = self._background.submit(
-                judged_together, joined, self._given, self._teeth
+                judged_together, joined, self._speed.mean, self._teeth
             )
 
     def _power_near(self, frequency: float) -> float:
@@ -251,9 +267,8 @@ class RunningDetection:
         held = self._held
         return held is not None and self._power_near(held.frequency) > _AS_BEFORE * held.power
 
-    def _take_speed(self, frequency: float) -> None:
-        """Go on with a speed, Hz, by which the windows of late have other lines."""
-        self._given = self._speed = frequency
+    def _look_again(self) -> None:
+        """Find the lines of the windows of late anew, for another speed has other lines."""
         self._history = deque(
             (
                 one._replace(
@@ -287,10 +302,10 @@ class RunningDetection:
             window.frames.length,
         )
         revolution = Revolution(
-            np.full(len(cut), self._speed),
+            np.full(len(cut), self._speed.current),
             _UNCERTAINTY,
-            "given, refined by the spectrum",
-            self._speed,
+            "given, refined by the spectrum" if self._speed.is_confirmed else "given",
+            self._speed.mean,
         )
         at_rest = np.median(power[: len(rest)], axis=0) if rest else None
         evidence = Evidence(
@@ -304,19 +319,6 @@ class RunningDetection:
     def _is_same_line(one: _Window, other: _Window) -> bool:
         apart = abs(one.line.frequency - other.line.frequency)
         return one.line.share >= GOES_ON and apart <= SAME_LINE * other.line.frequency
-
-    def _follow_speed(self, frames: Frames) -> None:
-        """Correct the speed by the lines of the windows of late."""
-        self._autocorrelations.append(line_autocorrelations(frames)[0])
-        found = best_spacing(
-            np.sum(self._autocorrelations, axis=0),
-            frames.step,
-            self._given * (1.0 - _RANGE),
-            self._given * (1.0 + _RANGE),
-            self._teeth or 1,
-        )
-        if found.significance > _SIGNIFICANT:
-            self._speed = found.frequency
 
     def _idle_level(self) -> float:
         """Level below which nothing is cut, dB; -inf where the levels make no two classes."""

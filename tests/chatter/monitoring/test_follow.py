@@ -98,6 +98,25 @@ def test_a_speed_some_percent_off_is_read_off_the_lines(factor, begin, verdict):
         assert last.chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
 
 
+def test_chatter_on_a_harmonic_of_the_stated_speed_is_called_once_its_windows_show_the_speed():
+    # 24.6 revolutions of the true speed to a harmonic of that which is 9.8 % slower
+    stated = FREQUENCY / round(FREQUENCY / (0.9 * REVOLUTION))
+    values = made(1.0, 4.0)[:, None]
+    found = running(values[:, 0], stated).take(values)  # beside no judgement of many windows
+    first = next(one for one in found if one.verdict == "chatter")
+    assert 1.0 < first.time < 1.0 + 60.0 / REVOLUTION
+    assert first.spindle_frequency == pytest.approx(REVOLUTION, rel=5e-3)
+    assert first.chatter_frequency == pytest.approx(FREQUENCY, rel=2e-3)
+
+
+@pytest.mark.parametrize("factor", [1.016, 0.984])
+def test_no_stable_cut_chatters_before_its_speed_is_read_off_the_lines(factor):
+    for seconds in (1.0, 3.0):
+        values = made(9.0, seconds)[:, None]
+        found = running(values[:, 0], factor * REVOLUTION).take(values)
+        assert "chatter" not in {one.verdict for one in found}
+
+
 def test_a_stable_cut_after_chatter_is_not_idle():
     values = np.concatenate([made(9.0, 2.0), made(0.0, 2.0), made(9.0, 4.0)])
     observed = taken_in_time(running(values), values[:, None])
