@@ -13,7 +13,7 @@ import panel as pn
 from chatter.app.workbench.channel_assignment import ChannelAssignment
 from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.page_words import in_words_of_the_page
-from chatter.app.workbench.repaired_case import UPDATED, why_no_repaired_case
+from chatter.app.workbench.repaired_case import take_repaired_case, why_no_repaired_case
 from chatter.app.workbench.residual_file import RESIDUALS
 from chatter.app.workbench.residual_view import ResidualView
 from chatter.app.workbench.result_panel import result_panel, same_call
@@ -264,8 +264,7 @@ class MeasurementView:
         if why_no_repaired_case(results):  # as it stands on the page
             return
         try:
-            target = session.new_path(self.accepted_name.value.strip())
-            load(results / UPDATED).save(target)
+            target = take_repaired_case(session, results, self.accepted_name.value.strip())
         except InputError as error:
             self.work.show_message(str(error))
             return

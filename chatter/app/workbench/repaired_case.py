@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from chatter.app.workbench.session import read_object
+from chatter.app.workbench.session import Session, read_object
+from chatter.description.case import Case, load
 from chatter.explain.data_checks.finding import FATAL
 from chatter.explain.verdict import NOTHING_MISSING
 
@@ -26,6 +28,28 @@ def why_no_repaired_case(results: Path) -> str:
     if found.get("effects") or found.get("empirical"):
         return ""
     return f"There is no repaired case: {_reason(found)}."
+
+
+def take_repaired_case(session: Session, results: Path, name: str) -> Path:
+    """Save the repaired case under a name of the folder; returns where.
+
+    A machine that was repaired with it stands among the results, where the next explanation writes
+    its own: it is saved beside the case. InputError if one of the names is taken, or is none.
+    """
+    target, case = session.new_path(name), load(results / UPDATED)
+    if _has_machine_in(case, results):
+        machine = session.new_path(f"{target.stem}-machine.toml")
+        case.machine_file().save(machine)
+        # relative to the case as it lies now; saving it elsewhere keeps what is meant
+        case = case.patch({"structure.machine": os.path.relpath(machine, results)})
+    case.save(target)
+    return target
+
+
+def _has_machine_in(case: Case, results: Path) -> bool:
+    if not case.on_machine:
+        return False
+    return Path(case.structure.machine).resolve().parent == results.resolve()
 
 
 def _reason(found: Mapping[str, Any]) -> str:

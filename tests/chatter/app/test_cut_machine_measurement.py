@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,10 +17,12 @@ import chatter
 from chatter.app.workbench.cut_view import sound_of
 from chatter.app.workbench.diagnostic_figure import MODEL_COLOURS, diagnostic_figure
 from chatter.app.workbench.page import Workbench
+from chatter.app.workbench.repaired_case import take_repaired_case
 from chatter.app.workbench.studies import explanation_in_words
 from chatter.description.errors import InputError
 from chatter.explain.measurement_file import read_measurement
 from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
+from tests.chatter.studies.whatif.conftest import MACHINE
 from tests.places import EXAMPLES
 
 PATIENCE = 600.0
@@ -367,6 +370,30 @@ def test_the_repaired_case_is_accepted_under_a_new_name(workbench, tmp_path):
     assert chatter.load(tmp_path / "repaired.toml").material.Ktc == pytest.approx(700e6)
     view.accept()
     assert "is there already" in view.work.message.object
+
+
+def test_a_repaired_machine_goes_with_its_case(workbench, tmp_path):
+    """It stood among the results, where the next explanation would have changed it."""
+    results = tmp_path / "results" / "set-1" / "explain"
+    results.mkdir(parents=True)
+    (tmp_path / "machine.toml").write_text(MACHINE)
+    on_machine = chatter.load(tmp_path / "case.toml").patch(
+        {"structure.mode": None, "structure.machine": str(tmp_path / "machine.toml")}
+    )
+    repaired = on_machine.patch({"machine.damping_ratio": 0.07})
+    repaired.save(results / "case-updated.toml")
+    assert (results / "case-updated-machine.toml").is_file()
+    target = take_repaired_case(workbench.session, results, "repaired.toml")
+    shutil.rmtree(results)
+    case = chatter.load(target)
+    assert Path(case.structure.machine) == tmp_path / "repaired-machine.toml"
+    assert case.machine_file().damping_ratio == 0.07
+    # another of the name is not written over
+    results.mkdir(parents=True)
+    repaired.save(results / "case-updated.toml")
+    target.unlink()
+    with pytest.raises(InputError, match=r"repaired-machine\.toml: is there already"):
+        take_repaired_case(workbench.session, results, "repaired.toml")
 
 
 def test_no_case_is_offered_where_nothing_was_found(workbench, tmp_path):
