@@ -92,7 +92,9 @@ def lobes(options: LobesOptions) -> None:
         return
     of_files = grid or options.json or options.out or options.cluster or options.tables != "csv"
     if live and of_files:
-        raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
+        raise InputError(
+            "--live shows a page and writes no files; leave --grid, --json, --tables and --out away"
+        )
     if not live and of_live:
         raise InputError("--port and --no-browser belong to --live; give it with them")
     if live:

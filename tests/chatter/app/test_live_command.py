@@ -43,7 +43,10 @@ def test_serves_until_ctrl_c():
         urllib.request.urlopen(url, timeout=5)
 
 
-@pytest.mark.parametrize("options", [["--live", "--grid"], ["--live", "--json"], ["--port", "1"]])
+@pytest.mark.parametrize(
+    "options",
+    [["--live", "--grid"], ["--live", "--json"], ["--live", "--tables", "none"], ["--port", "1"]],
+)
 def test_options_that_do_not_go_together_are_told(options):
     found = chatter_command("lobes", CASE, *options)
     assert found.exit_code == 2
