@@ -63,6 +63,8 @@ def _supported(segment: Segment, evidence: Evidence) -> Segment:
     """
     if segment.verdict != STABLE:
         return segment
+    if evidence.revolution.source == "given" and evidence.other_speed is None:
+        return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=_unconfirmed(segment))
     time = evidence.frames.time
     rows = np.flatnonzero((time >= segment.begin) & (time <= segment.end))
     share = share_on_harmonics(evidence, slice(rows[0], rows[-1] + 1)) if rows.size else 1.0
@@ -74,6 +76,14 @@ def _supported(segment: Segment, evidence: Evidence) -> Segment:
         "another"
     )
     return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
+
+
+def _unconfirmed(segment: Segment) -> str:
+    return (
+        f"no spacing of lines confirms {60.0 * segment.spindle_frequency:.0f} rpm, and a line of "
+        "chatter may be on a harmonic of a speed that is not true: check --spindle-speed and "
+        "--teeth, or record a tacho or a longer cut"
+    )
 
 
 def _stable_at_both(evidence: Evidence, own: list[Segment], faster: list[Segment]) -> list[Segment]:
@@ -92,6 +102,8 @@ def _maybe_of_slower(stated: Segment, slower: Segment, evidence: Evidence) -> Se
         return stated
     if stated.verdict != CHATTER:
         return _disagreeing(stated, slower, evidence) if slower.verdict == CHATTER else stated
+    if slower.verdict == STABLE:
+        return _disagreeing(stated, slower, evidence)
     reason = (
         f"{stated.reason}; its lines may be harmonics of a cut without chatter at "
         f"{60.0 * evidence.other_speed.frequency:.0f} rpm"

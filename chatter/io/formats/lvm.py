@@ -130,8 +130,8 @@ def _abscissa(
 ) -> Array:
     """Abscissa that all channels have; of start and step where there is no column of it."""
     if layout.abscissas == "no":
-        start = [_number(path, line, text, layout) for text in properties.get("X0", [""])]
-        step = [_number(path, line, text, layout) for text in properties.get("Delta_X", [""])]
+        start = _numbers(path, line, properties.get("X0"), layout)
+        step = _numbers(path, line, properties.get("Delta_X"), layout)
         size = cells[places[0]].size
         several = [a + b * np.arange(size) for a, b in zip(start, step, strict=False)]
         several = several[: len(places)]
@@ -141,6 +141,12 @@ def _abscissa(
     if any(not np.array_equal(one, several[0]) for one in several):
         raise MeasurementError(f"{path}: line {line + 1}: the channels are not sampled together")
     return several[0]
+
+
+def _numbers(path: Path, line: int, cells: Sequence[str] | None, layout: _Layout) -> list[float]:
+    """Numbers of a property; behind them LabVIEW leaves a cell empty for the comments."""
+    given = [text for text in cells or () if text]
+    return [_number(path, line, text, layout) for text in given or [""]]
 
 
 def _end_of_heading(path: Path, lines: Sequence[str], start: int) -> int:

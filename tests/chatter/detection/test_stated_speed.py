@@ -55,6 +55,8 @@ def test_a_stable_cut_is_no_chatter_for_sure_at_a_wrong_speed(revolution, teeth,
         found = detected(recording, factor * revolution, teeth)
         for one in found.segments:
             assert one.verdict != "chatter" or one.confidence <= 0.5, (factor, one)
+            # what lies half way between the harmonics of twice the speed are those of the speed
+            assert factor != 2.0 or one.verdict != "chatter", one
     assert detected(recording, revolution, teeth).verdict == "stable"
 
 
@@ -150,3 +152,19 @@ def test_a_simulated_cut_is_stable_at_no_wrong_speed(depth, verdict):
     for factor in (0.8, 1.0, 1.2, 1.5):
         found = chatter.detect(recording, f"{6000.0 * factor} rpm", 4).verdict
         assert found in ((verdict,) if factor == 1.0 else (verdict, "not judged", "idle"))
+
+
+def test_a_speed_that_no_lines_confirm_calls_no_chatter_stable():
+    # teeth pass so fast that few of their lines are heard; chatter is on a stated harmonic
+    random = np.random.default_rng(1)
+    time = clock(2.0)
+    revolution, teeth = 199.5, 3
+    stated = 1.2 * revolution
+    values = forced_cut(random, time, revolution, teeth, 0.0) + noise(random, time)
+    values = values + 2.3 * chatter_line(random, time, 4.0 * stated, teeth * revolution, 0.1)
+    recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+    found = detected(recording, stated, teeth)
+    assert "no spacing of lines confirms the spindle speed" in found.notes
+    assert not any(one.verdict == "stable" for one in found.segments)
+    assert any("check --spindle-speed and --teeth" in one.reason for one in found.segments)
+    assert detected(recording, revolution, teeth).verdict == "chatter"

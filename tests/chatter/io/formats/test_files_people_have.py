@@ -78,6 +78,14 @@ def test_lvm_of_every_layout(tmp_path, layout):
     assert_is_the_record(read_hammer_record(as_lvm(tmp_path / "tap.lvm", **layout)))
 
 
+def test_lvm_without_abscissas_has_an_empty_cell_for_comments_behind_each_property(tmp_path):
+    path = as_lvm(tmp_path / "tap.lvm", abscissas="No")
+    lines = path.read_text(encoding="utf-8").split("\n")
+    ended = [f"{line}\t" if "\t" in line else line for line in lines]
+    path.write_text("\r\n".join(ended), encoding="utf-8")
+    assert_is_the_record(read_hammer_record(path))
+
+
 def test_lvm_is_recognised_by_content(tmp_path):
     assert format_of(as_lvm(tmp_path / "tap.txt"), "signals").name == "lvm"
 
