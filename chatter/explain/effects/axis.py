@@ -1,6 +1,6 @@
 """Effects of a feed axis: its friction, offset, cogging."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -9,7 +9,11 @@ from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free, polar
 from chatter.explain.effects.sines_of_position import LEAST_PERIOD, strongest_sines
 from chatter.explain.fitting import Parameter
-from chatter.explain.measurement import Measurement
+from chatter.explain.measurement import Measurement, Run
+
+#: speed below which an axis rests or creeps, m/s, and samples kept for which it does at the least:
+#: more than the low pass of the force spreads a jump over
+_AT_REST, _LEAST_RESTING = 1e-4, 8
 
 
 def typical_force(measurement: Measurement) -> float:
@@ -20,6 +24,22 @@ def typical_force(measurement: Measurement) -> float:
 
 def _coulomb_of(measurement: Measurement) -> float:
     return measurement.case.axis.coulomb_friction or typical_force(measurement)
+
+
+def has_dry_friction(measurement: Measurement, effects: Collection[str]) -> bool:
+    """Whether a dry friction is declared, or is among effects that were found."""
+    return bool(measurement.case.axis.coulomb_friction) or CoulombFriction.name in effects
+
+
+def rests_without_force(run: Run) -> bool:
+    """Whether an axis rests some time in a move while its force is no more than noise."""
+    resting = np.abs(run.signals["velocity"]) < _AT_REST
+    intervals = np.flatnonzero(np.diff(resting, prepend=False, append=False)).reshape(-1, 2)
+    return any(
+        end - begin >= _LEAST_RESTING
+        and abs(float(np.mean(run.signals["force"][begin:end]))) < run.record.noise["force"]
+        for begin, end in intervals
+    )
 
 
 class AxisValue(Effect):
@@ -66,6 +86,10 @@ class Asymmetry(AxisValue):
     name = "asymmetry"
     label = "asymmetry of friction"
     help = "friction differs with the direction"
+
+    def applies_beside(self, measurement: Measurement, others: Collection[str]) -> bool:
+        """Where there is a dry friction; of none, a difference would drive the axis one way."""
+        return has_dry_friction(measurement, others)
 
 
 class QuadraticDrag(AxisValue):
@@ -204,6 +228,13 @@ class Offset(AxisValue):
     name = "offset"
     label = "constant force"
     help = "a constant force is held, as of weight"
+
+    def applies_beside(self, measurement: Measurement, others: Collection[str]) -> bool:
+        """Where a dry friction may hold it at rest, or no rest is known to be free of force."""
+        if has_dry_friction(measurement, others):
+            return True
+        runs = {id(run.whole or run): run.whole or run for run in measurement.runs}
+        return not any(rests_without_force(run) for run in runs.values())
 
 
 class Cogging(Effect):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -65,6 +65,10 @@ class Effect(ABC):
     def applies(self, measurement: Measurement) -> bool:
         """Whether it may be missing in a measurement of one of its kinds."""
         return not measurement.case.get(self.declared)
+
+    def applies_beside(self, measurement: Measurement, others: Collection[str]) -> bool:
+        """Whether it may be missing beside other effects that were found, by name."""
+        return True
 
     @abstractmethod
     def parameters(self, measurement: Measurement) -> Sequence[Parameter]:

@@ -80,7 +80,11 @@ class Stage:
 def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, number: int) -> Stage:
     """Try every effect beside those of a problem; `number` is that of the stage, for progress."""
     added = {effect.name for effect in problem.effects}
-    effects = [one for one in candidates(problem.measurement) if one.name not in added]
+    effects = [
+        one
+        for one in candidates(problem.measurement)
+        if one.name not in added and one.applies_beside(problem.measured_by(one), added)
+    ]
     screened, runs = problem.screened(now, split.fitted)
     progress("looking at what may be missing", number / (MOST_EFFECTS + 1))
     steps = _linearised_steps(screened, now, runs, effects, progress, number)

@@ -52,7 +52,7 @@ class Sums(Kind):
 def measured(shapes_of, values, runs=6) -> Measurement:
     """Runs of a common force, and shapes times their values."""
     random = np.random.default_rng(8)
-    case = loads('title = "sums"\n[axis]\nmoving_mass = "20 kg"')
+    case = loads('title = "sums"\n[axis]\nmoving_mass = "20 kg"\ncoulomb_friction = "1 N"')
     made = []
     for number in range(runs):
         shapes = (20.0 * np.sin(np.arange(SAMPLES) / 50.0), *shapes_of(random))
