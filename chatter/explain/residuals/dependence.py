@@ -18,6 +18,8 @@ Indices = NDArray[np.intp]
 
 #: shifts against which a share is held, and standard deviations of theirs that it must exceed
 _SHIFTS, _BEYOND = 150, 3.0
+#: shifts of a run that are held in memory together
+_AT_ONCE = 30
 #: shares below this are not told, whatever their significance
 LEAST_SHARE = 0.01
 #: weight of a bin over the largest below which nothing is known there: no cut, no share of it
@@ -78,12 +80,13 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
     weights = [_sums(fold.bins, fold.weight**2, bins) for fold in folds]
     folds = _without_constant(folds)
     total = sum(float(s.normalised @ s.normalised) for s in samples)
-    share = _share(folds, weights, bins) / max(total, 1e-300)
+    own = [_sums(fold.bins, fold.normalised * fold.weight, bins) for fold in folds]
+    share = _share(own, weights) / max(total, 1e-300)
     threshold = np.inf
     if share > LEAST_SHARE:
         rng = np.random.default_rng(seed)
-        shifted = np.array([_share(_shifted(folds, rng), weights, bins) for _ in range(_SHIFTS)])
-        shifted /= max(total, 1e-300)
+        products = _shifted_products(folds, bins, rng)
+        shifted = np.array([_share(one, weights) for one in products]) / max(total, 1e-300)
         # what a shift loses by chance is no measure of how far it may gain
         spread = float(np.std(shifted))
         threshold = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
@@ -110,10 +113,21 @@ def _without_constant(folds: Sequence[Sample]) -> list[Sample]:
     return [s._replace(normalised=s.normalised - constant * s.weight) for s in folds]
 
 
-def _shifted(folds: Sequence[Sample], rng: np.random.Generator) -> list[Sample]:
-    return [
-        s._replace(normalised=np.roll(s.normalised, rng.integers(s.normalised.size))) for s in folds
-    ]
+def _shifted_products(folds: Sequence[Sample], bins: int, rng: np.random.Generator) -> Array:
+    """Products (shifts, folds, bins) of residuals, shifted at random, and weights, summed."""
+    shifts = np.array([[rng.integers(s.normalised.size) for s in folds] for _ in range(_SHIFTS)])
+    found = np.empty((_SHIFTS, len(folds), bins))
+    for index, (sample, later) in enumerate(zip(folds, shifts.T, strict=True)):
+        size, known = sample.bins.size, np.flatnonzero(sample.bins >= 0)
+        of_bins = np.zeros((size, bins))
+        of_bins[known, sample.bins[known]] = sample.weight[known]
+        twice = np.tile(sample.normalised, 2)
+        # row k of the windows is the residual later by size - k samples
+        windows = np.lib.stride_tricks.sliding_window_view(twice, size)
+        for begin in range(0, _SHIFTS, _AT_ONCE):
+            some = slice(begin, begin + _AT_ONCE)
+            found[some, index] = windows[size - later[some]] @ of_bins
+    return found
 
 
 def _sums(bins: Indices, values: Array, count: int) -> Array:
@@ -123,9 +137,11 @@ def _sums(bins: Indices, values: Array, count: int) -> Array:
     return np.bincount(bins[known], weights=values[known], minlength=count)
 
 
-def _share(folds: Sequence[Sample], weights: Sequence[Array], bins: int) -> float:
-    """Sum of squares that every fold loses by the steps of the others."""
-    products = [_sums(s.bins, s.normalised * s.weight, bins) for s in folds]
+def _share(products: Sequence[Array] | Array, weights: Sequence[Array]) -> float:
+    """Sum of squares that every fold loses by the steps of the others.
+
+    Products of residual and weight, and squares of the weights, are summed by bin, fold by fold.
+    """
     all_products, all_weights = np.sum(products, axis=0), np.sum(weights, axis=0)
     lost = 0.0
     for own, weight in zip(products, weights, strict=True):
