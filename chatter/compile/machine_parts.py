@@ -176,7 +176,8 @@ def _reduced(section: ImportedSection, name: str) -> ImportedPart:
 
 def _axis(composition: Composition, name: str) -> MachineAxis:
     axis = composition.file.axis[name]
-    return axis.axis(composition.geometry(name), composition.shift(axis.driven_part))
+    driven = composition.file.once(f"axis.{name}.driven", axis.driven)
+    return axis.axis(composition.geometry(name), composition.shift(axis.driven_part), driven)
 
 
 def _contact(composition: Composition) -> list[Coupling]:
@@ -209,7 +210,7 @@ def _frictions(
     axes: Mapping[str, MachineAxis],
     connectors: list[Connector],
 ) -> list[FrictionAt]:
-    law, target = friction.spec(), friction.on
+    law, target = composition.file.once(f"friction.{name}", friction.spec), friction.on
     if target.mode is not None:
         return [FrictionAt(name, law, mode=target.mode - 1)]
     if target.axis is not None:

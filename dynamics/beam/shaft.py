@@ -236,6 +236,10 @@ class BeamLine:
         object.__setattr__(elsewhere, "origin", finite(self.name, "origin", origin, (3,)))
         return elsewhere
 
+    def shifted(self, shift: ArrayLike) -> BeamLine:
+        """Same line elsewhere, shifted by (3,) in m."""
+        return self.begun_at(np.asarray(self.origin) + shift)
+
     def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
         """Displacements and rotations at a position per freedom of the nodes.
 

@@ -94,18 +94,22 @@ def machines_unreduced(
     Frictions on modes have the modes of their number at each. Arguments and errors as there.
     """
     all_known = [*known, *[None] * (len(positions) - len(known))]
-    return [
-        _completed(parts, conditions, before)
-        for parts, before in zip(_in_one_mesh(positions, conditions), all_known, strict=True)
-    ]
+    machines: list[Machine] = []
+    for parts, before in zip(_in_one_mesh(positions, conditions), all_known, strict=True):
+        neighbour = machines[0] if machines else None
+        machines.append(_completed(parts, conditions, before, neighbour))
+    return machines
 
 
 def _completed(
-    parts: MachineParts, conditions: Mapping[str, Condition] | None, known: Machine | None
+    parts: MachineParts,
+    conditions: Mapping[str, Condition] | None,
+    known: Machine | None,
+    neighbour: Machine | None,
 ) -> Machine:
     """Machine of parts, with the damping of its modes; what is known of it is not made again."""
     if known is None or not _of_mesh(known, parts):
-        return full_machine(parts, conditions)
+        return full_machine(parts, conditions, neighbour=neighbour)
     damped = parts.damping_ratio != 0.0 or parts.mode_damping
     if damped and known.modes is None:
         return full_machine(parts, conditions, known.assembly)

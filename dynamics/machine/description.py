@@ -202,18 +202,20 @@ def full_machine(
     parts: MachineParts,
     conditions: Mapping[str, Condition] | None = None,
     whole: Assembly | None = None,
+    neighbour: Machine | None = None,
 ) -> Machine:
     """Assemble a machine as `machine` does, with all of its modes.
 
-    What was assembled of the same parts already, in the same conditions, may be given.
+    What was assembled of the same parts already, in the same conditions, may be given, and the
+    machine of some of them, at another position, the `neighbour`.
     """
     held = _conditions(parts.axes, conditions or {})
     driven = {axis.name: axis.drive.parts(axis.geometry) for axis in parts.axes}
     if whole is None:
-        whole = _assembled(parts, held, driven)
+        whole = _assembled(parts, held, driven, None if neighbour is None else neighbour.assembly)
     structure, modes = whole.structure, None
     if parts.damping_ratio != 0.0 or parts.mode_damping:
-        modes = undamped_modes(structure)
+        modes = undamped_modes(structure, near=_modes_of_same_mass(structure, neighbour))
         structure = with_modal_damping(structure, parts.damping_ratio, parts.mode_damping, modes)
     return Machine(
         structure,
@@ -240,8 +242,18 @@ def full_machine(
     )
 
 
+def _modes_of_same_mass(structure: LinearStructure, neighbour: Machine | None) -> Modes | None:
+    """All modes of a machine at another position, where they are orthonormal over the mass here."""
+    if neighbour is None or neighbour.assembly.structure.mass is not structure.mass:
+        return None
+    return neighbour.modes
+
+
 def _assembled(
-    parts: MachineParts, held: Mapping[str, Condition], driven: Mapping[str, DriveParts]
+    parts: MachineParts,
+    held: Mapping[str, Condition],
+    driven: Mapping[str, DriveParts],
+    neighbour: Assembly | None,
 ) -> Assembly:
     """Assembly of parts and drives, whose axes are held by something or nothing."""
     connectors, couplings = _links(parts, held, driven)
@@ -254,6 +266,7 @@ def _assembled(
         parts.allowed_rigid_motions + moving,
         [rotor for drive in driven.values() for rotor in drive.rotors],
         couplings,
+        neighbour,
     )
 
 

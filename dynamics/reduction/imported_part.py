@@ -137,6 +137,11 @@ class ImportedPart:
         ]
 
     @cached_property
+    def _bendings(self) -> dict[tuple[str, str], NDArray[np.float64]]:
+        """Of all spans, by their points."""
+        return {(one.first, one.second): _bending(one.along) for one in self._spans}
+
+    @cached_property
     def _all_positions(self) -> NDArray[np.float64]:
         """Of the points, (k, 3), m."""
         return np.array(list(self.positions.values()))
@@ -166,9 +171,10 @@ class ImportedPart:
                 f"goes from {ends} m"
             )
         share = span.share_within(at)
-        first, second = (self.structure.points[name] for name in (span.first, span.second))
         nearest = span.start + share * span.along
-        return rigid_motion(at - nearest) @ bent_beam(first, second, span.along, share)
+        bent = _at_share(self._bendings[span.first, span.second], share)
+        ends = [self.structure.points[name] for name in (span.first, span.second)]
+        return rigid_motion(at - nearest) @ bent @ np.vstack(ends)
 
 
 class _Span(NamedTuple):
@@ -215,6 +221,19 @@ def bent_beam(
     share : float
         0 to 1.
     """
+    return _at_share(_bending(along), share) @ np.vstack([first, second])
+
+
+def _at_share(bending: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    """Value (6, 12) of a polynomial of `_bending`."""
+    return (share ** np.arange(4) @ bending).reshape(6, 12)
+
+
+def _bending(along: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cubic of the share of the way, as `bent_beam` has it: coefficients (4, 6 * 12).
+
+    Motion (6,) per displacements and rotations of both ends (12,).
+    """
     length = float(np.linalg.norm(along))
     axis = along / length
     lengthwise = np.outer(axis, axis)
@@ -222,21 +241,24 @@ def bent_beam(
     crossed = _crossed_with(axis)
     # rotation to slope of the displacement along the axis, theta x axis
     turning = -crossed
-    s = share
-    values = (2 * s**3 - 3 * s**2 + 1, length * (s**3 - 2 * s**2 + s))
-    values += (3 * s**2 - 2 * s**3, length * (s**3 - s**2))
-    slopes = ((6 * s**2 - 6 * s) / length, 3 * s**2 - 4 * s + 1)
-    slopes += ((6 * s - 6 * s**2) / length, 3 * s**2 - 2 * s)
-    # motion (6, 6) per displacements and rotations of either end
-    ends = []
-    for end, straight in enumerate((1.0 - s, s)):
-        motion = np.empty((6, 6))
-        motion[:3, :3] = straight * lengthwise + values[2 * end] * across
-        motion[:3, 3:] = values[2 * end + 1] * (across @ turning)
-        motion[3:, :3] = slopes[2 * end] * (crossed @ across)
-        motion[3:, 3:] = straight * lengthwise + slopes[2 * end + 1] * (crossed @ across @ turning)
-        ends.append(motion)
-    return ends[0] @ first + ends[1] @ second
+    # in powers of the share: displacement of either end, and slope there, over the length
+    values = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0]])
+    values = np.vstack([values, [[0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -1.0, 1.0]]])
+    slopes = np.hstack([values[:, 1:] * [1.0, 2.0, 3.0], np.zeros((4, 1))])
+    bending = np.zeros((4, 6, 12))
+    for end, straight in enumerate(([1.0, -1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0])):
+        motion = bending[:, :, 6 * end : 6 * end + 6]
+        motion[:, :3, :3] = _times(straight, lengthwise) + _times(values[2 * end], across)
+        motion[:, :3, 3:] = _times(length * values[2 * end + 1], across @ turning)
+        motion[:, 3:, :3] = _times(slopes[2 * end] / length, crossed @ across)
+        motion[:, 3:, 3:] = _times(straight, lengthwise)
+        motion[:, 3:, 3:] += _times(slopes[2 * end + 1], crossed @ across @ turning)
+    return bending.reshape(4, 72)
+
+
+def _times(powers: ArrayLike, matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Polynomial (4, 3, 3) of coefficients (4,) times a matrix."""
+    return np.multiply.outer(np.asarray(powers), matrix)
 
 
 def _crossed_with(vector: NDArray[np.float64]) -> NDArray[np.float64]:

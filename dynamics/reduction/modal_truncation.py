@@ -45,7 +45,10 @@ class StateSpace(NamedTuple):
 
 
 def undamped_modes(
-    structure: LinearStructure, highest: float = np.inf, count: int | None = None
+    structure: LinearStructure,
+    highest: float = np.inf,
+    count: int | None = None,
+    near: Modes | None = None,
 ) -> Modes:
     """Lowest undamped modes of (M, K), eq. 3.
 
@@ -58,6 +61,9 @@ def undamped_modes(
         Hz; all modes up to it.
     count : int, optional
         At most so many.
+    near : Modes, optional
+        All modes of a dense structure of the same mass, in whose coordinates those of this one are
+        found sooner.
 
     Raises
     ------
@@ -70,6 +76,9 @@ def undamped_modes(
     sparse = scipy.sparse.issparse(structure.stiffness) or scipy.sparse.issparse(structure.mass)
     if sparse:
         shapes = _sparse_shapes(structure, highest, count)
+    elif near is not None and near.shapes.shape[1] == structure.size:
+        over = near.shapes.T @ (structure.stiffness @ near.shapes)
+        shapes = near.shapes @ np.linalg.eigh(0.5 * (over + over.T))[1]
     else:
         shapes = _dense_shapes(structure.mass, structure.stiffness)
     inertia = np.einsum("nm,nm->m", shapes, structure.mass @ shapes)

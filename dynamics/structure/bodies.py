@@ -7,6 +7,7 @@ connectors with six stiffnesses at a position. Displacements and rotations are s
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -137,6 +138,12 @@ class Body:
         """(6, 6): displacements and rotations at a position per freedom of the body."""
         return rigid_motion(np.asarray(position, dtype=np.float64) - self.centre)
 
+    def shifted(self, shift: NDArray[np.float64]) -> Body:
+        """Same body elsewhere, shifted by (3,) in m."""
+        elsewhere = copy(self)  # its numbers were checked once
+        object.__setattr__(elsewhere, "centre", self.centre + shift)
+        return elsewhere
+
 
 @dataclass(frozen=True, eq=False)
 class Connector:
@@ -169,6 +176,12 @@ class Connector:
         if np.max(np.abs(axes @ axes.T - np.eye(3))) > 1e-6:
             raise StructureError(f"{where}: the rows of axes must be perpendicular unit vectors")
         object.__setattr__(self, "axes", axes)
+
+    def shifted(self, shift: NDArray[np.float64]) -> Connector:
+        """Same connector elsewhere, shifted by (3,) in m."""
+        elsewhere = copy(self)  # its numbers were checked once
+        object.__setattr__(elsewhere, "at", self.at + shift)
+        return elsewhere
 
     def in_own_axes(self, motion: NDArray[np.float64]) -> NDArray[np.float64]:
         """Turn motion (6, n) at the position into the connector's own axes."""

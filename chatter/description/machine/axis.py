@@ -128,16 +128,24 @@ class AxisSection(Section):
             name, self.direction, self.driven_part, self.carrying, at + shift, position
         )
 
-    def axis(self, geometry: DrivenAxis, shift: NDArray[np.float64]) -> MachineAxis:
-        """The axis with its drive and control.
+    def driven(self) -> tuple[FeedDrive, tuple[DriveController, ...]]:
+        """Drive and controllers, the same at all positions.
 
         Raises StructureError or ControlError if numbers make no sense.
         """
         drive = self.drive.spec()
+        return drive, self.controllers(drive)
+
+    def axis(
+        self,
+        geometry: DrivenAxis,
+        shift: NDArray[np.float64],
+        driven: tuple[FeedDrive, tuple[DriveController, ...]],
+    ) -> MachineAxis:
+        """The axis with its drive and control."""
         return MachineAxis(
             geometry,
-            drive,
-            self.controllers(drive),
+            *driven,
             None if self.scale_at is None else np.asarray(self.scale_at) + shift,
             *(() if self.brake is None else ((self.brake.stiffness, self.brake.damping),)),
         )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from chatter.description.directions import Direction
@@ -117,12 +115,12 @@ class BeamSection(Section):
         raise_if_any([("bearings", f'"{name}" is there twice') for name in sorted(twice)])
         return self
 
-    def part(self, name: str, shift: NDArray[np.float64]) -> BeamLine:
-        """The beam, shifted (3,) m by the axes that carry it."""
+    def part(self, name: str) -> BeamLine:
+        """The beam at position 0 of the axes that carry it."""
         return BeamLine(
             name,
             [segment.spec(self.material) for segment in self.segments],
-            np.asarray(self.origin) + shift,
+            self.origin,
             self.axis,
             [disc.spec() for disc in self.discs],
             [bearing.spec() for bearing in self.bearings],

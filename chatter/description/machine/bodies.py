@@ -72,9 +72,9 @@ class BodySection(Section):
             tensor[row, column] = tensor[column, row] = value
         return tensor
 
-    def part(self, name: str, shift: NDArray[np.float64]) -> Body:
-        """The body, shifted (3,) m by the axes that carry it."""
-        return Body(name, self.mass, self.tensor, np.asarray(self.centre) + shift)
+    def part(self, name: str) -> Body:
+        """The body at position 0 of the axes that carry it."""
+        return Body(name, self.mass, self.tensor, self.centre)
 
 
 class SixStiffness(Section):
@@ -143,14 +143,14 @@ class ConnectorSection(Section):
             return [name]
         return [f"{name}[{number}]" for number in range(len(self.positions))]
 
-    def parts(self, name: str, shift: NDArray[np.float64]) -> list[Connector]:
-        """The connectors, shifted (3,) m with the first part."""
+    def parts(self, name: str) -> list[Connector]:
+        """The connectors at position 0 of the axes that carry their first part."""
         positions = self.positions if self.at is None else (self.at,)
         return [
             Connector(
                 one,
                 *self.between,
-                np.asarray(at) + shift,
+                at,
                 self.stiffness.values,
                 self.damping.values,
                 np.eye(3) if self.axes is None else np.array(self.axes),

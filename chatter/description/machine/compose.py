@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drive.parts import DrivenAxis
+from dynamics.structure.bodies import Connector
 
 if TYPE_CHECKING:
+    from chatter.description.machine.bodies import ConnectorSection
     from chatter.description.machine.machine_file import MachineFile
 
 
@@ -44,28 +46,35 @@ class Composition:
         file = self.file
         for kind in ("body", "beam"):
             for name, section in getattr(file, kind).items():
-                yield self._made_once_at_rest(f"{kind}.{name}", name, partial(section.part, name))
+                key, make = f"{kind}.{name}", partial(section.part, name)
+                yield key, partial(self._part, key, name, make)
         for name, connector in file.connector.items():
-            make = partial(connector.parts, name)
-            yield self._made_once_at_rest(f"connector.{name}", connector.between[0], make)
+            yield f"connector.{name}", partial(self._connectors, name, connector)
         for name, axis in file.axis.items():
             yield f"axis.{name}", partial(self.geometry, name)
             if axis.drive is not None:
-                yield f"axis.{name}.drive", axis.drive.spec
+                yield self._made_once(f"axis.{name}.drive", axis.drive.spec)
             if axis.control is not None:
                 # a transmission of 1 in place of a drive that may be wrong
-                yield f"axis.{name}.control", partial(axis.control.spec, 1.0)
+                yield self._made_once(f"axis.{name}.control", partial(axis.control.spec, 1.0))
         for name, friction in file.friction.items():
-            yield f"friction.{name}", friction.spec
+            yield self._made_once(f"friction.{name}", friction.spec)
 
-    def _made_once_at_rest(
-        self, key: str, part: str, make: Callable[[NDArray[np.float64]], Any]
-    ) -> tuple[str, Callable[[], Any]]:
-        """Path and maker of what travels with a part; where that stays, it is made once."""
-        shift = self.shift(part)
-        if np.any(shift):
-            return key, partial(make, shift)
-        return key, partial(self.file.once, key, partial(make, shift))
+    def _made_once(self, key: str, make: Callable[[], Any]) -> tuple[str, Callable[[], Any]]:
+        """Path and maker of what is the same at all positions."""
+        return key, partial(self.file.once, key, make)
+
+    def _part(self, key: str, name: str, make: Callable[[], Any]) -> Any:
+        """Part where it is, which was made once."""
+        shift = self.shift(name)
+        part = self.file.once(key, make)
+        return part.shifted(shift) if np.any(shift) else part
+
+    def _connectors(self, name: str, section: ConnectorSection) -> list[Connector]:
+        """Connectors where their first part is, which were made once."""
+        shift = self.shift(section.between[0])
+        connectors = self.file.once(f"connector.{name}", partial(section.parts, name))
+        return [one.shifted(shift) for one in connectors] if np.any(shift) else connectors
 
     def geometry(self, name: str) -> DrivenAxis:
         """Where an axis is driven."""
