@@ -168,6 +168,9 @@ def _of_process(case: Case) -> Iterator[Slider]:
             "process_damping.friction", group, "ploughing friction", "", given.friction, 0.0, most
         )
     yield from _of_wear(case, group)
+    if case.on_machine and case.structure.friction is not False:
+        value, path = case.structure.amplitude_at_frictions * 1e6, "structure.friction_amplitude"
+        yield _from_zero(path, group, "vibration at the machine's frictions", "um", value, 20.0)
     if given is not None and given.indentation_force is not None:
         path = "process_damping.indentation_force"
         yield _around(path, group, "indentation force", "N/mm^3", given.indentation_force)

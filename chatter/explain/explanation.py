@@ -34,6 +34,7 @@ from chatter.explain.kinds.stability import Stability
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
+from chatter.explain.new_values import in_usual_units
 from chatter.explain.next_measurement.proposal import next_measurement
 from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.reported_effects import confounded, parameters_of, probability
@@ -337,7 +338,7 @@ class Explanation(NotebookResult):
         written = write_results(folder, texts, {})
         residuals, case = (Path(folder) / name for name in ("residual.png", "case-updated.toml"))
         write_whole(residuals, picture)
-        self.case.save(case)
+        in_usual_units(self.case, self.measurement.case).save(case)
         self.predictions.kept.discard()
         return [*written, residuals, case]
 

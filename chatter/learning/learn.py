@@ -18,6 +18,7 @@ from chatter.description.given_values import share_given, whole_number_given
 from chatter.description.units import rpm
 from chatter.explain.kinds.stability import Stability, likely_stable
 from chatter.explain.measurement import Measurement
+from chatter.explain.new_values import in_usual_units
 from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
@@ -218,13 +219,14 @@ class Learnt(NotebookResult):
         """
         texts = {"posterior.json": as_json(self.summary()), "learn.csv": self._table()}
         written = write_results(folder, texts, {"learn.png": self.plot()})
-        cases = {"case-updated.toml": self.updated}
+        updated = in_usual_units(self.updated, self.measurement.case)
+        cases = {"case-updated.toml": updated}
         chosen = self.next_cut
         if chosen is not None:
-            cases["next-cut.toml"] = self.updated.patch(
+            cases["next-cut.toml"] = updated.patch(
                 {
                     "cut.spindle_speed": f"{rpm(chosen.spindle_speed):.6g} rpm",
-                    "cut.axial_depth": chosen.axial_depth,
+                    "cut.axial_depth": f"{1e3 * chosen.axial_depth:.6g} mm",
                 }
             )
         for name, case in cases.items():

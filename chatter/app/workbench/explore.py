@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
+
+
+def _short_name(name: str) -> str:
+    """Name of a case file as seen from the folder of the notebook; elsewhere without its folder."""
+    path = Path(name)
+    try:
+        return path.resolve().relative_to(Path.cwd()).as_posix() if path.is_absolute() else name
+    except ValueError:
+        return path.name
 
 
 @takes_case_or_path
@@ -46,6 +56,6 @@ def explore(case: Case, method: str | None = None) -> Any:
         if shown and shown[0]._models:  # a notebook has no document that is told of changes
             pn.io.notebook.push_notebook(*shown)
 
-    view = StabilityView(case, case.name, show, method)
+    view = StabilityView(case, _short_name(case.name), show, method)
     shown.append(view.__panel__())
     return shown[0]

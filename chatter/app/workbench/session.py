@@ -6,6 +6,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,6 +24,8 @@ from chatter.io.formats.format_list import FORMATS
 
 #: folder of results below that of the session, and the file that says how they were made
 RESULTS, CALL = "results", "call.json"
+#: file beside results while they are computed, and after that where the computation was ended
+_STARTED = "started.txt"
 #: bytes of a file that is uploaded, and of all files of one upload
 LARGEST_FILE, LARGEST_UPLOAD = 64 * 1024**2, 256 * 1024**2
 #: files of one upload
@@ -259,6 +262,26 @@ def write_call(folder: Path, call: Mapping[str, Any]) -> None:
 def read_call(folder: Path) -> dict[str, Any]:
     """What `write_call` wrote; empty where there is nothing that can be read."""
     return read_object(folder / CALL)
+
+
+def write_started(folder: Path) -> None:
+    """Say beside results when a computation of new ones began."""
+    folder.mkdir(parents=True, exist_ok=True)
+    now = datetime.now().astimezone().strftime("%Y-%m-%d %H:%M")
+    (folder / _STARTED).write_text(f"{now}\n", encoding="utf-8")
+
+
+def read_started(folder: Path) -> str:
+    """When a computation that has not come to its end began; empty where there is none."""
+    try:
+        return (folder / _STARTED).read_text(encoding="utf-8").strip()[:40]
+    except (OSError, ValueError):
+        return ""
+
+
+def forget_started(folder: Path) -> None:
+    """Take away what `write_started` wrote."""
+    (folder / _STARTED).unlink(missing_ok=True)
 
 
 def read_object(path: Path) -> dict[str, Any]:

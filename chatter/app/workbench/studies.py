@@ -13,10 +13,12 @@ from chatter.app.workbench.residual_file import RESIDUALS, write_residuals
 from chatter.app.workbench.separate_process import Report
 from chatter.app.workbench.session import (
     CaseText,
+    forget_started,
     read_call,
     root_of_results,
     without_folder,
     write_call,
+    write_started,
 )
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
@@ -146,8 +148,12 @@ def run_study(
         report(study.label, done / total if total else 0.0)
 
     report(f"{study.label}: starting", 0.0)
-    result = study.compute(case.case(), options, folder, progress)
-    save_result(result, folder, {"title": study.label, **same_call(name, case.name, options)})
+    write_started(folder)
+    try:
+        result = study.compute(case.case(), options, folder, progress)
+        save_result(result, folder, {"title": study.label, **same_call(name, case.name, options)})
+    finally:  # a process that is ended from outside does not come here
+        forget_started(folder)
 
 
 #: what is computed of a machine, and its heading

@@ -10,7 +10,7 @@ import panel as pn
 from chatter.app.sliders import case_sliders
 from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.result_panel import result_panel, same_call
-from chatter.app.workbench.session import Session
+from chatter.app.workbench.session import Session, read_started
 from chatter.app.workbench.studies import OPTION_NAMES, STUDIES, run_study
 from chatter.app.workbench.studies import same_call as call_of
 from chatter.description.case import Case
@@ -20,6 +20,12 @@ _RESULTS_OF_WHATIF = ("", "lobes", "critical depth", "forces", "surface", "frf")
 
 #: what is said of a study that was cancelled and keeps what it has finished
 _GOES_ON = "cancelled; Start goes on where it stopped, if the case and the options stay the same"
+#: what is said of a study that began and left no results, and where it keeps what it has finished
+_HALF_ENDED = (
+    "This study was started at {} and has not come to its end: it was cancelled, the page was "
+    "closed, or it is still computing{}. Results below are of an earlier run."
+)
+_WOULD_GO_ON = "; Start goes on where it stopped, if the case and the options are the same"
 #: option of a study that names the values that vary, and how far each does at first
 _VARY, _SHARE = "vary", "+-20%"
 
@@ -118,7 +124,11 @@ class StudiesView:
 
     def _show_results(self) -> None:
         self._show_call()
-        self._result.objects = result_panel(self._session.results(self.choice.value))
+        folder = self._session.results(self.choice.value)
+        begun = read_started(folder)
+        goes_on = _WOULD_GO_ON if STUDIES[self.choice.value].goes_on else ""
+        told = [pn.pane.Str(_HALF_ENDED.format(begun, goes_on), width=880)] if begun else []
+        self._result.objects = [*told, *result_panel(folder)]
 
 
 def values_that_vary(case: Case) -> dict[str, str]:

@@ -16,6 +16,7 @@ from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.picture_files import picture_file
 from chatter.app.workbench.separate_process import in_own_process
 from chatter.app.workbench.session import LARGEST_FILE, Session
+from chatter.app.workbench.studies import run_study
 from chatter.app.workbench.table_files import PageTable, as_xlsx, table_of
 from chatter.app.workbench.upload import dropper
 from chatter.description.errors import InputError, RunError
@@ -347,6 +348,41 @@ def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
     again = Workbench(tmp_path)
     assert len(again.sheet._result.objects) >= 3
     again.end()
+
+
+def test_a_study_that_did_not_end_says_so_when_the_session_is_opened_again(
+    workbench, tmp_path, monkeypatch
+):
+    folder = workbench.session.results("optimum")
+
+    class Ended(BaseException):
+        """As the end of a process, of which no line of the study sees anything."""
+
+    def ended(*_, **__):
+        raise Ended
+
+    def told(view):
+        view.choice.value = "optimum"
+        return [str(one.object) for one in view._result.objects]
+
+    assert not told(workbench.studies)
+    # what a process that is ended leaves: it began, and took nothing away
+    monkeypatch.setattr("chatter.app.workbench.studies.forget_started", lambda folder: None)
+    monkeypatch.setattr(chatter, "optimum", ended)
+    with pytest.raises(Ended):
+        run_study("optimum", workbench.session.case_text, {}, folder, lambda *_: None)
+    again = Workbench(tmp_path)
+    (words,) = told(again.studies)
+    again.end()
+    assert "has not come to its end" in words
+    assert "Start goes on where it stopped" in words
+    # a study that fails has said why, and leaves nothing
+    monkeypatch.undo()
+    monkeypatch.setattr(chatter, "optimum", ended)
+    with pytest.raises(Ended):
+        run_study("optimum", workbench.session.case_text, {}, folder, lambda *_: None)
+    workbench.studies.choice.value = "pitch"
+    assert not told(workbench.studies)
 
 
 def test_a_value_that_varies_is_chosen_by_its_words(workbench):

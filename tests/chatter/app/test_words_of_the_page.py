@@ -88,3 +88,11 @@ def test_a_case_without_friction_says_how_to_add_it():
     assert "friction.guide.coulomb" in {one.path for one in case_sliders(stated)}
     machine = chatter.load(EXAMPLES / "friction-amplitude" / "case.toml")
     assert "in machine.toml;" in why_no_friction_slider(machine)
+    # the vibration that the frictions of a machine are taken at has one
+    (vibration,) = [
+        one for one in case_sliders(machine) if one.path == "structure.friction_amplitude"
+    ]
+    assert vibration.unit == "um"
+    assert vibration.value == pytest.approx(1e6 * machine.structure.amplitude_at_frictions)
+    without = machine.patch({"structure.friction_amplitude": None, "structure.friction": False})
+    assert "structure.friction_amplitude" not in {one.path for one in case_sliders(without)}

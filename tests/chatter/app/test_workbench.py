@@ -314,6 +314,17 @@ def test_a_notebook_shows_the_diagram_of_a_case():
     assert shown.select(pn.pane.Bokeh)
 
 
+def test_a_notebook_names_the_case_without_the_folders_of_the_computer(monkeypatch):
+    place = EXAMPLES / "two-degrees-of-freedom"
+    for folder, name in ((place, "case.toml"), (EXAMPLES, "two-degrees-of-freedom/case.toml")):
+        monkeypatch.chdir(folder)
+        shown = chatter.explore(chatter.load((place / "case.toml").resolve()), "zero-order")
+        said = " ".join(str(one.object) for one in shown.select(pn.pane.HTML))
+        said += " ".join(str(one.object) for one in shown.select(pn.pane.Str))
+        assert f"chatter lobes {name}" in said
+        assert str(place) not in said
+
+
 @pytest.mark.parametrize(("loaded", "wanted"), [(False, [{"inline": True}]), (True, [])])
 def test_a_notebook_asks_nothing_of_the_network_and_loads_once(monkeypatch, loaded, wanted):
     asked = []
