@@ -12,6 +12,7 @@ from chatter.explain.criteria import (
     FITTED_AGAIN,
     LEAST_EVIDENCE,
     MOST_EFFECTS,
+    MOST_LOST,
     NEAR_NOISE,
     NO_RESIDUAL,
     PAIRED,
@@ -228,6 +229,40 @@ def _in_other_forms(path: Path, split: Split, forms_of: Forms, progress: Progres
         now = problem.fit(split.fitted, member.fit.by_name)
         path = Path([*path.stages[:index], found, *path.stages[index + 1 :]], problem, now)
     return path
+
+
+def instead_of_two(path: Path, split: Split, progress: Progress) -> Path:
+    """Put a richer member of a family in the place of it and of another effect.
+
+    The other was sought beside the simpler member, and may stand for what the richer one holds.
+    """
+    for stage, other in itertools.permutations(path.stages, 2):
+        effect = stage.best.effect
+        forms = richer_forms(effect, path.problem.measurement)
+        if not forms:
+            continue
+        progress(f"looking at other forms of {effect.name}", 0.89)
+        without = path.problem.without_effect(effect).without_effect(other.best.effect)
+        members = [one for form in forms if (one := _instead(path, without, form, split))]
+        if not members:
+            continue
+        before = without.fit(split.fitted, path.now.by_name)
+        found = stage_with(without, before, split, members)
+        rest = [one for one in path.stages if one is not stage and one is not other]
+        problem = without.with_effect(found.best.effect)
+        return Path([*rest, found], problem, found.best.fit)
+    return path
+
+
+def _instead(path: Path, without: Problem, form: Effect, split: Split) -> Candidate | None:
+    """Form of an effect that does better than a path does; None where it does not."""
+    rough = without.with_effect(form).rough_fit(split.fitted, path.now.by_name)
+    if rough.cost > MOST_LOST * path.now.cost:
+        return None
+    found = fitted(without, form, split, rough.by_name, rough.jacobian)
+    gain = found.evidence - log_evidence(path.problem, path.now, split)
+    as_good = found.holdout <= path.problem.cost(path.now.by_name, split.holdout)
+    return found if gain > LEAST_EVIDENCE and as_good else None
 
 
 def _steps(

@@ -24,6 +24,7 @@ from chatter.explain.selection.path import (
     filtered,
     gone_on,
     in_other_forms,
+    instead_of_two,
     tried_again,
 )
 from chatter.explain.selection.problem import Problem
@@ -134,6 +135,9 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
             # another may have stood for what the other member holds
             path = tried_again(path, split)
         final = _of_all_runs(path)
+    if len(path.stages) > 1:
+        before, path = path, instead_of_two(path, split, progress)
+        final = final if path is before else _of_all_runs(path)
     helping: list[Stage] = []
     if path.stages and not is_at_noise(path.problem, final):
         path, helping = established_alone(path, split)
