@@ -17,8 +17,13 @@ Leaf = TypeVar("Leaf", bound=Callable)
 #: nothing is allocated in a time loop, so that references need no counting: it costs more there
 #: than the physics
 UNCOUNTED = {"error_model": "numpy", "_nrt": False}
-#: leaves become part of the loop that calls them
-INLINED = {**UNCOUNTED, "forceinline": True}
+#: leaves become part of the loop that calls them, and need no entry of their own
+INLINED = {
+    **UNCOUNTED,
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
 
 _WAITING: list[Callable[[], None]] = []
 

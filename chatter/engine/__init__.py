@@ -10,6 +10,7 @@ dispatch       list of the laws, their two phases `forces` and `commit`
 loop           the one loop: predict, correct, solve frictions, commit
 loop_stability stability of the control loops of a machine, by the same loop
 presets        decorator presets, folder of the compiled code
+compiled_once  inner functions compiled as parts of their drivers alone
 loaded_kernels compiled code taken from the disk without the compiler
 parallel       sweeps over points in threads, executor interface
 ============== ======================================================================

@@ -16,6 +16,7 @@ from pathlib import Path
 import numba
 
 from chatter.description.registry import extension_sources
+from chatter.engine.compiled_once import compile_once
 from chatter.engine.interruption import defer_interruptions
 from chatter.engine.loaded_kernels import load_without_compiler
 from cutting.compiled import UNCOUNTED
@@ -78,6 +79,7 @@ def _set_cache_folder() -> Path:
         return folder
     numba.config.CACHE_DIR = str(folder)
     load_without_compiler(folder)
+    compile_once()
     return folder
 
 
