@@ -18,12 +18,7 @@ Leaf = TypeVar("Leaf", bound=Callable)
 #: than the physics
 UNCOUNTED = {"error_model": "numpy", "_nrt": False}
 #: leaves become part of the loop that calls them, and need no entry of their own
-INLINED = {
-    **UNCOUNTED,
-    "forceinline": True,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
-}
+INLINED = {**UNCOUNTED, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 _WAITING: list[Callable[[], None]] = []
 
