@@ -422,7 +422,7 @@ def test_a_study_is_cancelled_and_goes_on(workbench, tmp_path):
     view.work.report = cancels
     view.start()
     assert view.work.computations.wait(PATIENCE)
-    assert view.work.message.object == "cancelled"
+    assert view.work.message.object.startswith("cancelled; Start goes on")
     assert max(done) < 1.0
     view.work.report = lambda stage, share: done.append(share)
     done.clear()
