@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 import sys
 from html import escape
 from importlib.util import find_spec
@@ -11,6 +12,7 @@ from typing import Any
 from chatter.plots.interactive_picture import interactive_picture
 from chatter.plots.notebook_scripts import load_notebook_scripts
 from chatter.plots.style import png_of
+from chatter.report.summary_rows import summary_rows
 
 #: characters of a repr that a notebook shows
 _LONGEST_REPR = 200
@@ -24,15 +26,26 @@ def notebook_page(result: Any) -> str:
     Parameters
     ----------
     result : object
-        With ``plot()``; ``sentences()`` and ``rows()`` are shown where it has them.
+        With ``plot()``; ``sentences()`` and ``rows()`` are shown where it has them, else what
+        ``summary()`` has.
     """
     parts = [f"<p>{escape(one)}</p>" for one in _words(result)]
-    if callable(getattr(result, "rows", None)):
-        rows = ("".join(f"<td>{escape(one)}</td>" for one in row) for row in result.rows())
-        parts.append(f"<table>{''.join(f'<tr>{row}</tr>' for row in rows)}</table>")
+    rows = ("".join(f"<td>{escape(one)}</td>" for one in row) for row in _rows(result))
+    table = "".join(f"<tr>{row}</tr>" for row in rows)
+    if table:
+        parts.append(f"<table>{table}</table>")
     drawn = result.plot()
     pages = drawn if isinstance(drawn, (list, tuple)) else [drawn]
     return "".join((*parts, *map(_picture, pages)))
+
+
+def _rows(result: Any) -> list[Any]:
+    """Table of a result; that of its summary where it has none and no sentences."""
+    if callable(getattr(result, "rows", None)):
+        return result.rows()
+    if hasattr(result, "sentences") or not hasattr(result, "summary"):
+        return []
+    return summary_rows(result.summary())
 
 
 def _words(result: Any) -> list[str]:
@@ -41,10 +54,20 @@ def _words(result: Any) -> list[str]:
         return result.sentences()
     summary = result.summary() if hasattr(result, "summary") else {}
     words = [str(summary[key]) for key in ("verdict", "reason") if summary.get(key)]
+    return [_name(result), *([": ".join(words)] if words else [])]
+
+
+def _name(result: Any) -> str:
+    """What a result is, and of what case."""
     told = repr(result)
-    if len(told) > _LONGEST_REPR:  # of a record whose arrays say nothing here
-        told = " ".join(filter(None, (type(result).__name__, getattr(result, "title", ""))))
-    return [told, *([": ".join(words)] if words else [])]
+    if len(told) <= _LONGEST_REPR and not told.startswith("<"):
+        return told
+    # of arrays, or of a class whose name is one word of Python
+    kind = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(result).__name__).removesuffix(" Result")
+    case = getattr(result, "case", None)
+    titles = (getattr(one, "title", "") for one in (result, case))
+    title = next(filter(None, titles), getattr(case, "name", ""))
+    return ": ".join(filter(None, (kind.capitalize(), title)))
 
 
 def _picture(drawn: Any) -> str:

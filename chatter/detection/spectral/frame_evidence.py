@@ -23,6 +23,7 @@ from chatter.detection.spectral.chatter_lines import (
 )
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
+    PLAUSIBLE,
     Revolution,
     about_given,
     from_spectrum,
@@ -58,6 +59,8 @@ _HOP, _MOST_FRAMES = 0.25, 2000.0
 _OF_MACHINE, _OF_CUT = 0.5, 0.8
 #: logarithm above the floor from which a bin counts to a line
 _STANDS_OUT = 2.0
+#: relative difference of speeds that are the same
+_SAME = 5e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,12 +155,29 @@ def _may_be_there_at_rest(evidence: Evidence, other: OtherSpeed) -> bool:
 
 def _cut_speaks_for(evidence: Evidence, other: OtherSpeed) -> bool:
     """Whether those lines that the cut adds speak for another speed than the stated one."""
+    return _lines_of_cut(evidence).speak_for(other)
+
+
+def cut_confirms_speed(evidence: Evidence) -> bool:
+    """Whether those lines that the cut adds are as far apart as the stated speed has them.
+
+    Lines that are there at rest, as of a bearing, may hide it over the whole recording.
+    """
+    if evidence.rest is None:
+        return False
+    stated = evidence.revolution.mean
+    found = _lines_of_cut(evidence).near(stated)
+    is_same = abs(found.frequency / stated - 1.0) < _SAME
+    return is_same and found.spacing.significance > PLAUSIBLE
+
+
+def _lines_of_cut(evidence: Evidence) -> LinesOfRecord:
+    """Lines that the cut adds to what is there at rest."""
     frames, rows = evidence.frames, _cuts(evidence)
     cut = frames._replace(
         time=frames.time[rows], power=frames.power[rows], above=frames.above[rows]
     )
-    lines = LinesOfRecord(cut, evidence.revolution.mean, evidence.teeth, evidence.rest)
-    return lines.speak_for(other)
+    return LinesOfRecord(cut, evidence.revolution.mean, evidence.teeth, evidence.rest)
 
 
 def _cuts(evidence: Evidence) -> NDArray[np.bool_]:

@@ -12,7 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from chatter.detection.spectral.frame_evidence import Evidence, evidence_at, share_on_harmonics
+from chatter.detection.spectral.frame_evidence import (
+    Evidence,
+    cut_confirms_speed,
+    evidence_at,
+    share_on_harmonics,
+)
 from chatter.detection.spectral.segments import (
     CHATTER,
     IDLE,
@@ -63,7 +68,8 @@ def _supported(segment: Segment, evidence: Evidence) -> Segment:
     """
     if segment.verdict != STABLE:
         return segment
-    if evidence.revolution.source == "given" and evidence.other_speed is None:
+    is_unconfirmed = evidence.revolution.source == "given" and evidence.other_speed is None
+    if is_unconfirmed and not cut_confirms_speed(evidence):
         return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=_unconfirmed(segment))
     time = evidence.frames.time
     rows = np.flatnonzero((time >= segment.begin) & (time <= segment.end))

@@ -319,8 +319,11 @@ def test_a_notebook_names_the_case_without_the_folders_of_the_computer(monkeypat
     for folder, name in ((place, "case.toml"), (EXAMPLES, "two-degrees-of-freedom/case.toml")):
         monkeypatch.chdir(folder)
         shown = chatter.explore(chatter.load((place / "case.toml").resolve()), "zero-order")
-        said = " ".join(str(one.object) for one in shown.select(pn.pane.HTML))
-        said += " ".join(str(one.object) for one in shown.select(pn.pane.Str))
+        said, until = "", time.monotonic() + PATIENCE
+        # the call is told after the diagram, which is computed in a thread
+        while "chatter lobes" not in said and time.monotonic() < until:
+            time.sleep(0.01)
+            said = " ".join(str(one.object) for one in shown.select(pn.pane.Str))
         assert f"chatter lobes {name}" in said
         assert str(place) not in said
 

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 import chatter
 from chatter.description.case import loads
 from chatter.plots.interactive_picture import interactive_picture
+from chatter.report.summary_rows import summary_rows
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.chatter.studies.test_modal_test import write_set
 from tests.dynamics.frf.hammer.hammer_records import CLOSE
@@ -200,3 +201,29 @@ def test_a_modal_test_says_its_modes(tmp_path):
     told = [float(one) for one in re.findall(r"([\d.]+) Hz, damping", text)]
     assert told == pytest.approx([mode[0] for mode in CLOSE.modes], rel=0.002)
     assert len(text) < 500
+
+
+def test_a_simulation_is_named_in_words_with_its_numbers_in_usual_units():
+    result = chatter.simulate(loads(TOOL_OF_922_HERTZ).patch({"title": "thin wall"}))
+    html = result._repr_html_()
+    assert html.startswith("<p>Simulation: thin wall</p>")
+    assert "SimulationResult" not in html
+    rows = dict(re.findall(r"<tr><td>(.*?)</td><td>(.*?)</td></tr>", html))
+    # 60 times the feed per tooth, teeth and revolutions a second
+    cut, tool = result.case.cut, result.case.tool
+    feed = 60e3 * cut.feed_per_tooth * tool.teeth * cut.spindle_speed / (2.0 * np.pi)
+    assert float(rows["feed rate [mm/min]"]) == pytest.approx(feed, rel=1e-3)
+    speed = 60.0 * tool.diameter / 2.0 * cut.spindle_speed
+    assert float(rows["cutting speed [m/min]"]) == pytest.approx(speed, rel=1e-3)
+
+
+def test_rows_of_a_summary_leave_out_what_is_no_cell():
+    power = {"mean_W": 1234.56, "deep": {"peak_W": 1.0}}
+    summary = {"title": "x", "depth_mm": 1.23456, "list": [1], "damping": 0.01, "stable": True}
+    summary |= {"power": power, "runs": 3, "none": None}
+    assert summary_rows(summary) == [
+        ("depth [mm]", "1.235"),
+        ("stable", "yes"),
+        ("power, mean [W]", "1235"),
+        ("runs", "3"),
+    ]

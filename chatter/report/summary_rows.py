@@ -1,0 +1,71 @@
+"""Rows of a table from the content of summary.json, whose keys end with the unit of their value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+#: ends of keys, longest first, and the unit that is read
+_UNITS = {
+    "mm_per_min": "mm/min",
+    "m_per_min": "m/min",
+    "cm3_per_min": "cm^3/min",
+    "percent": "%",
+    "mm3": "mm^3",
+    "rpm": "rpm",
+    "deg": "deg",
+    "mm": "mm",
+    "um": "um",
+    "us": "us",
+    "Hz": "Hz",
+    "Nm": "N m",
+    "MB": "MB",
+    "kg": "kg",
+    "N": "N",
+    "W": "W",
+    "J": "J",
+    "s": "s",
+}
+#: told above the table
+_TOLD_ELSEWHERE = frozenset({"title", "verdict", "reason"})
+_MOST_ROWS = 24
+
+
+def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Names with units, and values of four digits, of what a summary holds that fits in a cell.
+
+    Parameters
+    ----------
+    summary : mapping
+        Content of summary.json; what is below the second level, lists and numbers without a unit
+        are left out.
+    """
+    return list(_rows(summary, ""))[:_MOST_ROWS]
+
+
+def _rows(values: Mapping[str, Any], within: str) -> Iterator[tuple[str, str]]:
+    for key, value in values.items():
+        if isinstance(value, Mapping):
+            if not within:
+                yield from _rows(value, f"{_in_words(key)}, ")
+        elif key not in _TOLD_ELSEWHERE:
+            yield from _row(key, value, within)
+
+
+def _row(key: str, value: Any, within: str) -> Iterator[tuple[str, str]]:
+    if isinstance(value, bool):
+        yield within + _in_words(key), "yes" if value else "no"
+    elif isinstance(value, int):
+        yield within + _in_words(key), str(value)
+    elif isinstance(value, str) and value:
+        yield within + _in_words(key), value
+    elif isinstance(value, float):
+        for end, unit in _UNITS.items():
+            if key.endswith(f"_{end}"):
+                name = _in_words(key.removesuffix(f"_{end}"))
+                yield f"{within}{name} [{unit}]", f"{value:.4g}"
+                return
+
+
+def _in_words(key: str) -> str:
+    return key.replace("_", " ")
