@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import scipy.integrate
 
 from cutting.engagement.immersion import removed_section
 from cutting.engagement.uncut_band import band_beside_pass, band_beside_wall
@@ -56,6 +57,6 @@ def test_a_pass_beside_another_removes_the_stepover_by_the_depth():
         """Area between two circles and below the height depth: twice the half beyond the middle."""
         heights = np.linspace(0.0, depth, 200001)
         wide = np.sqrt(np.maximum(r**2 - (r - heights) ** 2, 0.0))
-        return np.trapezoid(2.0 * np.maximum(wide - half, 0.0), heights)
+        return scipy.integrate.trapezoid(2.0 * np.maximum(wide - half, 0.0), heights)
 
     assert found == pytest.approx([segment - common(0.5 * step)], rel=1e-4)
