@@ -10,6 +10,8 @@ _UNITS = {
     "mm_per_min": "mm/min",
     "m_per_min": "m/min",
     "cm3_per_min": "cm^3/min",
+    "m_per_N": "m/N",
+    "per_s": "1/s",
     "percent": "%",
     "mm3": "mm^3",
     "rpm": "rpm",

@@ -221,9 +221,13 @@ def test_rows_of_a_summary_leave_out_what_is_no_cell():
     power = {"mean_W": 1234.56, "deep": {"peak_W": 1.0}}
     summary = {"title": "x", "depth_mm": 1.23456, "list": [1], "damping": 0.01, "stable": True}
     summary |= {"power": power, "runs": 3, "none": None}
+    # seconds and newtons below the line of a fraction are none above it
+    summary |= {"growth_rate_per_s": -2.0, "receptance_m_per_N": 1e-6}
     assert summary_rows(summary) == [
         ("depth [mm]", "1.235"),
         ("stable", "yes"),
         ("power, mean [W]", "1235"),
         ("runs", "3"),
+        ("growth rate [1/s]", "-2"),
+        ("receptance [m/N]", "1e-06"),
     ]
