@@ -14,10 +14,10 @@ from chatter.stability.methods.multi_frequency.harmonics import harmonics_at
 from chatter.stability.methods.semi_discretization.arrays import milling_arrays
 from chatter.stability.methods.semi_discretization.multipliers import multipliers
 from chatter.stability.methods.semi_discretization.step_schemes import (
-    FirstOrder,
-    FullDiscretization,
-    SecondOrder,
-    ZerothOrder,
+    FIRST_ORDER,
+    FULL_DISCRETIZATION,
+    SECOND_ORDER,
+    ZEROTH_ORDER,
 )
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
@@ -70,10 +70,10 @@ def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
 @pytest.mark.parametrize(
     ("scheme", "published", "printed"),
     [
-        (ZerothOrder(), 1.29412, 6e-6),
-        (FirstOrder(), 1.35026, 6e-6),
+        (ZEROTH_ORDER, 1.29412, 6e-6),
+        (FIRST_ORDER, 1.35026, 6e-6),
         # the published code averages the coefficients in another way
-        (FullDiscretization(), 1.33585, 2e-4),
+        (FULL_DISCRETIZATION, 1.33585, 2e-4),
     ],
 )
 def test_forty_steps_of_every_scheme(scheme, published, printed):
@@ -84,9 +84,7 @@ def test_forty_steps_of_every_scheme(scheme, published, printed):
     )
 
 
-@pytest.mark.parametrize(
-    "scheme", [ZerothOrder(), FirstOrder(), SecondOrder(), FullDiscretization()]
-)
+@pytest.mark.parametrize("scheme", [ZEROTH_ORDER, FIRST_ORDER, SECOND_ORDER, FULL_DISCRETIZATION])
 def test_every_scheme_converges_to_the_exact_multiplier(scheme):
     arrays = milling_arrays(tool_922(1, 0.1, "up"))
     point = np.array([10000 * RPM]), np.array([2e-3])
@@ -102,7 +100,7 @@ def test_every_scheme_converges_to_the_exact_multiplier(scheme):
 def test_a_parabola_is_nearer_than_a_line_and_a_line_than_a_constant():
     arrays = milling_arrays(tool_922(1, 1.0, "down"))
     point = np.array([5000 * RPM]), np.array([0.5e-3])
-    schemes = (SecondOrder(), FirstOrder(), ZerothOrder())
+    schemes = (SECOND_ORDER, FIRST_ORDER, ZEROTH_ORDER)
     errors = [
         abs(abs(multipliers(arrays, *point, 60, scheme=scheme)[0]) - 1.07397558668)
         for scheme in schemes

@@ -19,10 +19,10 @@ from chatter.engine.presets import KERNEL, SUMMING_KERNEL
 from chatter.stability.arnoldi import register_operator
 from chatter.stability.methods.semi_discretization.first_order_step import first_order_step
 from chatter.stability.methods.semi_discretization.step_schemes import (
+    CONSTANT,
+    PARABOLA,
     FirstOrder,
-    FullDiscretization,
-    SecondOrder,
-    ZerothOrder,
+    OtherScheme,
     fully_discretized,
     semi_discretized,
 )
@@ -113,36 +113,33 @@ def _set_responses(transition, from_left, from_right, found, at_left, at_right):
 
 
 @njit(**KERNEL)
-def _zeroth_order(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
-    found, constant, _, _ = semi_discretized(arrays, stiffness, dashpot, duration)
-    _set_responses(transition, left, right, found, 0.5 * constant, 0.5 * constant)
+def _first_order_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    first_order_step(arrays, stiffness, dashpot, duration, transition, left, right, work)
 
 
 @njit(**KERNEL)
-def _full(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
-    found, at_left, at_right = fully_discretized(arrays, stiffness, dashpot, duration)
-    _set_responses(transition, left, right, found, at_left, at_right)
+def _other_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
+    if scheme.number == CONSTANT:
+        found, constant, _, _ = semi_discretized(arrays, stiffness, dashpot, duration)
+        _set_responses(transition, left, right, found, 0.5 * constant, 0.5 * constant)
+    elif scheme.number == PARABOLA:
+        found, constant, ramp, square = semi_discretized(arrays, stiffness, dashpot, duration)
+        _set_responses(transition, left, right, found, constant - ramp, ramp)
+        # what a parabola that vanishes at both ends, (s/h)^2 - s/h, adds
+        work[4][:, : ramp.shape[1]] = square - ramp
+    else:
+        found, at_left, at_right = fully_discretized(arrays, stiffness, dashpot, duration)
+        _set_responses(transition, left, right, found, at_left, at_right)
 
 
-@njit(**KERNEL)
-def _linear_and_square(arrays, stiffness, dashpot, duration, transition, left, right, work):
-    found, constant, ramp, square = semi_discretized(arrays, stiffness, dashpot, duration)
-    _set_responses(transition, left, right, found, constant - ramp, ramp)
-    # what a parabola that vanishes at both ends, (s/h)^2 - s/h, adds
-    work[4][:, : ramp.shape[1]] = square - ramp
-
-
-_STEPS = {
-    ZerothOrder: _zeroth_order,
-    FirstOrder: first_order_step,
-    SecondOrder: _linear_and_square,
-    FullDiscretization: _full,
-}
+_STEPS = {FirstOrder: _first_order_step, OtherScheme: _other_step}
 
 
 def take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
     """Discretize a step by the scheme."""
-    _STEPS[type(scheme)](arrays, stiffness, dashpot, duration, transition, left, right, work)
+    _STEPS[type(scheme)](
+        scheme, arrays, stiffness, dashpot, duration, transition, left, right, work
+    )
 
 
 @overload(take_step)
@@ -151,8 +148,8 @@ def _take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, r
         return None
     step = _STEPS[scheme.instance_class]
 
-    def stepped(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
-        step(arrays, stiffness, dashpot, duration, transition, left, right, work)
+    def stepped(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
+        step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work)
 
     return stepped
 

@@ -18,33 +18,25 @@ from numba import njit
 from chatter.engine.presets import KERNEL
 
 
-class ZerothOrder(NamedTuple):
-    """Delayed motion constant over a step."""
-
-    third_nodes: int = 0
-
-
 class FirstOrder(NamedTuple):
     """Delayed motion linear over a step."""
 
     third_nodes: int = 0
 
 
-class SecondOrder(NamedTuple):
-    """Delayed motion a parabola over a step, through a third node."""
+class OtherScheme(NamedTuple):
+    """One of the other schemes, chosen as it runs: they are compiled together."""
 
-    third_nodes: int = 1
-
-
-class FullDiscretization(NamedTuple):
-    """Delayed and present motion linear over a step."""
-
+    number: int
     third_nodes: int = 0
 
 
-Scheme = ZerothOrder | FirstOrder | SecondOrder | FullDiscretization
-ZEROTH_ORDER, FIRST_ORDER = ZerothOrder(), FirstOrder()
-SECOND_ORDER, FULL_DISCRETIZATION = SecondOrder(), FullDiscretization()
+Scheme = FirstOrder | OtherScheme
+#: numbers of the other schemes: delayed motion constant, and a parabola through a third node;
+#: delayed and present motion linear
+CONSTANT, PARABOLA, FULL = 0, 1, 2
+FIRST_ORDER, ZEROTH_ORDER = FirstOrder(), OtherScheme(CONSTANT)
+SECOND_ORDER, FULL_DISCRETIZATION = OtherScheme(PARABOLA, third_nodes=1), OtherScheme(FULL)
 
 
 @njit(**KERNEL)
