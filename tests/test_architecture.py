@@ -354,7 +354,7 @@ from chatter.stability.methods.semi_discretization.step_schemes import FIRST_ORD
 case = Case.from_dict(json.loads({case!r}))
 arrays = milling_arrays(milling_model(case))
 point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]
-value = multipliers_at(FIRST_ORDER, arrays, *point, np.array([16]), 1)[0]
+value = multipliers_at(FIRST_ORDER, arrays, *point, np.array([16]), 1, np.array([1]))[0][0]
 print(json.dumps([value.real, value.imag]))
 """
 

@@ -86,18 +86,18 @@ def _set_cache_folder() -> Path:
 CACHE_FOLDER = _set_cache_folder()
 defer_interruptions()
 
-#: functions called from drivers
+#: functions that Python calls too
 KERNEL = {"cache": True, "error_model": UNCOUNTED["error_model"]}
 #: the same where the call itself would cost: a table that is passed on has all its arrays counted
 INLINED_KERNEL = {**KERNEL, "forceinline": True}
-#: sums may be taken in lanes: always in the same order on one machine, whatever the threads
-SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: functions that compiled code alone calls: no entry for Python, kept on disk within their drivers
 INNER_KERNEL = {
     "error_model": KERNEL["error_model"],
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
 }
+#: sums may be taken in lanes: always in the same order on one machine, whatever the threads
+SUMMING_KERNEL = {**INNER_KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: the same that allocate nothing: arrays taken out of the tables they are passed need no counting,
 #: which would cost more than what most of them do
 LEAF_KERNEL = {**INNER_KERNEL, **UNCOUNTED}

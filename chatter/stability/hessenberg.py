@@ -9,13 +9,13 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 
 _MOST_SWEEPS = 60
 _EXCEPTIONAL_SHIFTS = (10, 20, 30, 40, 50)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _small_subdiagonal(h, last, norm):
     """Row at which the active block begins."""
     row = last
@@ -30,7 +30,7 @@ def _small_subdiagonal(h, last, norm):
     return row
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _pair_of_block(x, y, w, shift):
     """Eigenvalues of the last two rows; x and y its diagonal, w the product off it."""
     p = 0.5 * (y - x)
@@ -45,7 +45,7 @@ def _pair_of_block(x, y, w, shift):
     return complex(x + p, z), complex(x + p, -z)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _double_step(h, first, last, x, y, w):
     """One implicit double-shift QR sweep on the rows first to last."""
     m = last - 2
@@ -102,7 +102,7 @@ def _double_step(h, first, last, x, y, w):
             h[i, k] -= p
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def hessenberg_eigenvalues(h):
     """Eigenvalues (n,) of a real upper Hessenberg matrix by the double-shift QR algorithm.
 
@@ -140,7 +140,7 @@ def hessenberg_eigenvalues(h):
     return values
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def hessenberg_vector(h, value):
     """Eigenvector (n,) of unit norm of a Hessenberg matrix (n, n), by one inverse iteration.
 
@@ -177,7 +177,7 @@ def hessenberg_vector(h, value):
     return x / math.sqrt(total)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def dominant_pair(h):
     """Eigenvalue of largest magnitude (imaginary part >= 0) and its eigenvector of unit norm."""
     values = hessenberg_eigenvalues(h.copy())

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import INLINED_KERNEL, KERNEL
+from chatter.engine.presets import INLINED_KERNEL, INNER_KERNEL, KERNEL
 
 #: of the angle, the last that matters on the way to a time
 _SMALL_STEP = 1e-9
@@ -51,7 +51,7 @@ CONSTANT_SPEED = SpeedVariation(0.0, 1.0, 0)
 STEADY_ROTATION = SpindleRotation(1.0, 0.0, 1.0, 0, 1, 1)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _common_divisor(a, b):
     """Greatest common divisor."""
     while b > 0:
@@ -59,7 +59,7 @@ def _common_divisor(a, b):
     return a
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _beside_true_ratio(variation, fit, speed, pattern, per_cycle):
     """Rotation with fewer or more tool periods in a period than the true ratio asks for.
 
@@ -120,7 +120,7 @@ def spindle_rotation_at(variation, fit, speed, pattern):
     )
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def in_mean_angle(rotation):
     """The same rotation with the mean angle in place of time: the mean speed is 1."""
     return SpindleRotation(

@@ -2,9 +2,20 @@
 
 import numpy as np
 import pytest
+from numba import njit
 from scipy.linalg import hessenberg
 
-from chatter.stability.hessenberg import hessenberg_eigenvalues, hessenberg_vector
+from chatter.stability import hessenberg as compiled
+
+
+@njit
+def hessenberg_eigenvalues(h):
+    return compiled.hessenberg_eigenvalues(h)
+
+
+@njit
+def hessenberg_vector(h, value):
+    return compiled.hessenberg_vector(h, value)
 
 
 def worst_distance(values, expected):

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array, IntegerArray
-from chatter.engine.presets import KERNEL, LEAF_KERNEL
+from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL
 from chatter.stability.spindle_rotation import SpindleRotation, angle_at, speed_at, time_at
 from cutting.edge_segments.coupling import coupling_at, delay_at, part_below, share_of_height
 from cutting.edge_segments.engaged_intervals import (
@@ -66,7 +66,7 @@ class Instant(NamedTuple):
     time: float  # s
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def edge_at_depth(cut, depth):
     """Lay out the segments of a cut at a depth (m)."""
     segments = cut.segments
@@ -80,7 +80,7 @@ def edge_at_depth(cut, depth):
     return EdgeAtDepth(top, reach, most)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def empty_sources(count, rank):
     """Room for sources."""
     return Sources(
@@ -88,7 +88,7 @@ def empty_sources(count, rank):
     )
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def with_room(sources, count, more):
     """The sources, of which `count` are there, with room for more."""
     if count + more <= sources.node.shape[0]:
@@ -102,7 +102,7 @@ def with_room(sources, count, more):
     return larger
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def nothing_present(rank, distinct):
     """Room for the couplings at a time."""
     return Present(

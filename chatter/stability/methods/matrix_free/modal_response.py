@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL, KERNEL
 
 #: Gauss points of a step, and where the motion is kept besides: its middle and its end
 _ROOT = math.sqrt(3.0) / 6.0
@@ -22,7 +22,7 @@ _TERMS = 40
 _FEWEST_POINTS, _MOST_POINTS = 6, 16
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _ramp(angle, damping, s):
     """Answer of y'' + 2 zeta a y' + a^2 y = s, at rest at zero: y, y', y'' at s.
 
@@ -74,7 +74,7 @@ def mode_response(frequency, damping, length, out):
         out[p, 1, 3] = rate * (step - first * impulse)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _free_motion(frequency, damping, elapsed):
     """Answer of a mode at rest to an impulse: x omega and x'."""
     root = math.sqrt(1.0 - damping * damping)

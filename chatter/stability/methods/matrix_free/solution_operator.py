@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 from chatter.stability.arnoldi import register_operator
 from chatter.stability.methods.matrix_free.step_assembly import StepAssembly
 
@@ -19,7 +19,7 @@ class PropagationScratch(NamedTuple):
     free: Array  # (2, 2, r)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def propagation_scratch(assembly):
     """Return scratch for `propagate`."""
     steps, rank = assembly.kind.shape[0], assembly.shape.shape[1]
@@ -28,7 +28,7 @@ def propagation_scratch(assembly):
     )
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def propagate(assembly, function, out, scratch):
     """Run an initial function through one period.
 
@@ -64,7 +64,7 @@ def propagate(assembly, function, out, scratch):
                 position += 1
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _set_motion(assembly, state, node):
     modes, rank = assembly.shape.shape
     for k in range(rank):
@@ -75,7 +75,7 @@ def _set_motion(assembly, state, node):
             node[1, k] += assembly.shape_rate[m, k] * state[2 * m + 1]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _solve_forces(assembly, step, response, state, motion, force, free):
     """Set `force` (2, r) to that at the two Gauss points of a step."""
     modes, rank = assembly.shape.shape
@@ -115,7 +115,7 @@ def _solve_forces(assembly, step, response, state, motion, force, free):
                         force[row // rank, row % rank] += from_earlier[row, p * rank + i] * push
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _advance(assembly, response, state, motion, node, force):
     """Set the state to the end of a step and note the motion at its middle and its end."""
     modes, rank = assembly.shape.shape
@@ -139,7 +139,7 @@ def _advance(assembly, response, state, motion, node, force):
                 state[2 * m], state[2 * m + 1] = displacement, velocity
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def initial_function(assembly):
     """A fixed pseudo-random state with no motion before."""
     steps = assembly.kind.shape[0]

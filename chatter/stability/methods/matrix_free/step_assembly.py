@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array, IntegerArray
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 from chatter.stability.methods.matrix_free.couplings import (
     Instant,
     add_contact,
@@ -59,7 +59,7 @@ class StepAssembly(NamedTuple):
     rate: float  # rad/s
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _kinds(steps):
     """Steps that are the first of their kind, and the kind of each; plain ones of a length."""
     count = steps.power.shape[0]
@@ -78,7 +78,7 @@ def _kinds(steps):
     return first[:found], kind
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _responses(cut, steps, first):
     """Answers of all modes over the steps of each kind (S, n, 4, 2, 4)."""
     modes = cut.natural_frequency.shape[0]
@@ -96,7 +96,7 @@ def _responses(cut, steps, first):
     return response
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _reach_of_force(cut, response, displacement, velocity):
     """Displacement and velocity at both Gauss points from the forces there (2r, 2r)."""
     modes, rank = cut.shape.shape
@@ -113,7 +113,7 @@ def _reach_of_force(cut, response, displacement, velocity):
                         velocity[p * rank + k, q * rank + l] += both * v
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _eliminate(system, first, second):
     """Solve for two right-hand sides in their position; `system` is overwritten. Pivots by rows."""
     n = system.shape[0]
@@ -138,7 +138,7 @@ def _eliminate(system, first, second):
                     part[i, j] -= factor * part[k, j]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
     """Lay out the steps of one period at a mean spindle speed (rad/s) and an axial depth (m).
 
@@ -194,7 +194,7 @@ def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
     )  # fmt: skip
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _enter(present, p, rate, reach, reach_rate, from_motion, system):
     """Enter the couplings at one Gauss point into the equations of a step."""
     rank = present.stiffness.shape[0]

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
 from cutting.edge_segments.coupling import chip_vanishes, part_below
@@ -55,14 +55,14 @@ class Steps(NamedTuple):
     high: Array  # (N,)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _rise(segments, segment, side):
     """Angle by which the edge enters (side 0) or leaves later at the high end of a segment, rad."""
     arc = segments.entry[segment] if side == 0 else segments.exit[segment]
     return arc[1] - arc[0] - (segments.angle[segment, 1] - segments.angle[segment, 0])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _follows(segments, segment):
     """Whether a segment goes on where that before it in the table ends."""
     apart = abs(segments.angle[segment - 1, 1] - segments.angle[segment, 0])
@@ -71,7 +71,7 @@ def _follows(segments, segment):
     return apart < _SAME and segments.bottom[segment] > segments.bottom[segment - 1]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _sides_of_root(segments, segment, side, end):
     """Side of a border on which the edge enters or leaves nearly all at once, if any.
 
@@ -92,7 +92,7 @@ def _sides_of_root(segments, segment, side, end):
     return _ROOT_AFTER if (rise > 0.0) == (end == 0) else _ROOT_BEFORE
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _border_angles(cut, depth):
     """Borders in one period of the tool (rad), unsorted, and the sides with a thin chip of each."""
     segments, period = cut.segments, cut.period_angle
@@ -124,7 +124,7 @@ def _border_angles(cut, depth):
     return angles[:count], sides[:count]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _border_times(cut, rotation, depth):
     """Border times over the whole period, ascending (s), and their flags."""
     angles, sides = _border_angles(cut, depth)
@@ -157,7 +157,7 @@ def _border_times(cut, rotation, depth):
     return out[: kept + 1], marks[: kept + 1]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _empty_steps(count):
     """Room for steps."""
     return Steps(
@@ -166,7 +166,7 @@ def _empty_steps(count):
     )  # fmt: skip
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def step_time(steps, step, share):
     """Time at a share of a step, s."""
     s = steps.low[step] + share * (steps.high[step] - steps.low[step])
@@ -175,7 +175,7 @@ def step_time(steps, step, share):
     return steps.anchor[step] + steps.span[step] * s
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _add_steps(steps, count, anchor, span, power, number):
     """Divide the time between a border and that beyond its span; returns the number of steps."""
     for i in range(number):
@@ -191,7 +191,7 @@ def _add_steps(steps, count, anchor, span, power, number):
     return count + number
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _grading(segments, sides, thin, root):
     """Power of the time and number of the steps beside a border; none for plain steps."""
     if sides & thin != 0:
@@ -203,7 +203,7 @@ def _grading(segments, sides, thin, root):
     return 1.0, 0
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _plain_steps(cut, rotation, depth, borders, steps_per_wavelength):
     """Steps (I,) that each interval between borders needs, not rounded."""
     arrays = cut.arrays
@@ -217,7 +217,7 @@ def _plain_steps(cut, rotation, depth, borders, steps_per_wavelength):
     return need
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _pass_on(sides, need):
     """Let a border next to a singular one be singular, too, on the side away from it.
 
@@ -237,7 +237,7 @@ def _pass_on(sides, need):
         sides[last] = sides[0]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def period_steps(cut, rotation, depth, steps_per_wavelength, refinement):
     """Cut a period into `Steps`.
 
@@ -270,7 +270,7 @@ def period_steps(cut, rotation, depth, steps_per_wavelength, refinement):
     return _with_nodes(steps, count, borders[-1])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _with_nodes(steps, count, end):
     """The steps that are there, with their starts and middles."""
     node = np.empty(2 * count + 1)

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array, ComplexArray
-from chatter.engine.presets import DRIVER, KERNEL
+from chatter.engine.presets import DRIVER, INNER_KERNEL
 
 #: largest change of the phase of the determinant from one frequency to the next, rad
 _LARGEST_PHASE = 0.7
@@ -38,7 +38,7 @@ class FrequencyResponse(NamedTuple):
     receptance: ComplexArray  # m/N (m, r, r)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _receptance_at(response, omega, out):
     """Set out (r, r) to the receptance at a frequency, negative ones too."""
     lines = response.omega
@@ -61,7 +61,7 @@ def _receptance_at(response, omega, out):
             out[i, j] = value if omega >= 0.0 else value.conjugate()
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _loop(response, harmonics, speed, base, omega, count, matrix):
     """Set matrix ((2 count + 2) r)^2 to A(i omega); harmonics -count - 1 .. count."""
     rank = response.receptance.shape[1]

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from chatter.description.arrays import Array, ComplexArray
-from chatter.engine.presets import DRIVER, KERNEL
+from chatter.engine.presets import DRIVER, INNER_KERNEL
 from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_below, radius_at
 from cutting.process_damping.linear_flank import inverse_radius
 
@@ -27,7 +27,7 @@ class Harmonics(NamedTuple):
     stiffening: float  # stiffness without delay over the dashpot, 1/rad
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _parts(segments, segment, top, highest):
     """Parts of a segment along the edge, each of one delay, that the highest order resolves."""
     varies = abs(segments.delay[segment, 1] - segments.delay[segment, 0])
@@ -35,7 +35,7 @@ def _parts(segments, segment, top, highest):
     return min(1 + int(varies / _SAME_DELAY) + int(turned * top * highest / 6.0), _MOST_PARTS)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _points_along(segments, segment, top, parts, highest):
     """Gauss points along a part: two or three do where it is short for the highest order."""
     turned = abs(segments.angle[segment, 1] - segments.angle[segment, 0])
@@ -49,7 +49,7 @@ def _points_along(segments, segment, top, parts, highest):
     return 2 if phase < _SHORT_PART else 3
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _distinct_delays(segments, depth, highest):
     """Delays of all parts down to a depth, each once, ascending, rad."""
     count = 0
@@ -74,7 +74,7 @@ def _distinct_delays(segments, depth, highest):
     return delays[:used].copy()
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _add_by_quadrature(cut, segment, position, length, speed_factor, orders, stiffness, dashpot):
     """Add the coefficients of a position along a segment that stands for a length of edge, m."""
     segments = cut.segments
@@ -113,7 +113,7 @@ def _add_by_quadrature(cut, segment, position, length, speed_factor, orders, sti
                 wave *= turn
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _add_exactly(cut, segment, position, length, speed_factor, orders, stiffness, dashpot):
     """Do the same where the force is linear in the chip.
 

@@ -1,9 +1,9 @@
-"""Compiled loops that Python calls: multipliers of many points, motion of one."""
+"""Compiled loop that Python calls: multipliers of many points, motion at the last."""
 
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import DRIVER
+from chatter.engine.presets import DRIVER, INNER_KERNEL
 from chatter.stability.arnoldi import dominant_eigenpair
 from chatter.stability.methods.semi_discretization.monodromy import (
     LARGEST_SPACE,
@@ -17,39 +17,32 @@ from chatter.stability.methods.semi_discretization.monodromy import (
 
 
 @njit(**DRIVER)
-def multipliers_at(scheme, arrays, speeds, depths, steps, refinement):
-    """Dominant multipliers (n,), imaginary part >= 0, at n speeds (rad/s) and depths (m).
+def multipliers_at(scheme, arrays, speeds, depths, steps, refinement, free_steps):
+    """Dominant multipliers at n points, motion at the last of them, and durations of its steps.
 
-    `steps` (n,) a tooth period; every step in the cut is divided by `refinement`.
+    Speeds (n,) in rad/s, depths (n,) in m; `steps` (n,) a tooth period, of which every one in the
+    cut is divided by `refinement`. A free motion is solved exactly, by `free_steps` (n,): 1 but
+    where its motion is wanted. The multipliers (n,) have an imaginary part >= 0; the motion
+    (m + 1, r), m, is that of the tool point at the borders of m steps; durations (m,) are in s.
     """
-    out = np.empty(speeds.shape[0], dtype=np.complex128)
-    for i in range(speeds.shape[0]):
-        # free motion is one exact step
+    count, rank = speeds.shape[0], arrays.shape.shape[1]
+    out = np.empty(count, dtype=np.complex128)
+    motion, duration = np.empty((0, rank), dtype=np.complex128), np.empty(0)
+    for i in range(count):
         period = build_monodromy(
-            scheme, arrays, speeds[i], depths[i], steps[i], refinement, np.int64(1)
+            scheme, arrays, speeds[i], depths[i], steps[i], refinement, free_steps[i]
         )
-        out[i], _, _ = dominant_eigenpair(
+        out[i], vector, _ = dominant_eigenpair(
             period, start_vector(period), first_check(period), RESIDUAL, LARGEST_SPACE
         )
-    return out
+        if i == count - 1:
+            real = _motion_over_period(period, vector.real.copy())
+            motion = real + 1j * _motion_over_period(period, vector.imag.copy())
+            duration = period.duration
+    return out, motion, duration
 
 
-@njit(**DRIVER)
-def dominant_motion(scheme, arrays, speed, depth, steps):
-    """Dominant multiplier at a point, motion that belongs to it, and durations of the steps.
-
-    The motion (steps + 1, r), m, is that of the tool point at the borders of the steps; durations
-    (steps,) are in s.
-    """
-    period = build_monodromy(scheme, arrays, speed, depth, steps, np.int64(1), steps)
-    value, vector, _ = dominant_eigenpair(
-        period, start_vector(period), first_check(period), RESIDUAL, LARGEST_SPACE
-    )
-    real = _motion_over_period(period, vector.real.copy())
-    return value, real + 1j * _motion_over_period(period, vector.imag.copy()), period.duration
-
-
-@njit(**DRIVER)
+@njit(**INNER_KERNEL)
 def _motion_over_period(period, vector):
     """Motion of the tool point (steps + 1, r), m; the vector holds that of the last period."""
     steps, size, rank = period.from_left.shape

@@ -7,10 +7,10 @@ import math
 
 from numba import njit
 
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _multiply_generator(arrays, stiffness, dashpot, x, motion, force, out):
     """Set out = A x for the state equation in the cut; x and out have shape (2n, m)."""
     modes, rank = arrays.shape.shape
@@ -38,7 +38,7 @@ def _multiply_generator(arrays, stiffness, dashpot, x, motion, force, out):
             out[2 * i + 1, j] = rate
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _generator_norm(arrays, stiffness, dashpot):
     """Upper bound of the norm of the generator, 1/s."""
     free, gain_0, gain_1, reach = 0.0, 0.0, 0.0, 0.0
@@ -58,7 +58,7 @@ def _generator_norm(arrays, stiffness, dashpot):
     return free + math.sqrt(reach * size_0 * gain_0) + math.sqrt(reach * size_1 * gain_1)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def first_order_step(arrays, stiffness, dashpot, duration, transition, from_left, from_right, work):
     """Exact step with constant coefficients and a delayed motion linear in time.
 

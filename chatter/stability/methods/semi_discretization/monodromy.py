@@ -15,7 +15,7 @@ from numba import njit, types
 from numba.extending import overload
 
 from chatter.description.arrays import Array, IntegerArray
-from chatter.engine.presets import KERNEL, SUMMING_KERNEL
+from chatter.engine.presets import INNER_KERNEL, SUMMING_KERNEL
 from chatter.stability.arnoldi import register_operator
 from chatter.stability.methods.semi_discretization.first_order_step import first_order_step
 from chatter.stability.methods.semi_discretization.step_schemes import (
@@ -55,7 +55,7 @@ class Monodromy(NamedTuple):
     from_further: Array  # (steps, 2n, r)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def interval_borders(arrays, lag):
     """Angles in one tooth pitch at which an edge enters or leaves, ascending, both ends included.
 
@@ -80,7 +80,7 @@ def interval_borders(arrays, lag):
     return borders[: count + 1]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _is_engaged(arrays, angle, lag):
     """True where some part of an edge is in the cut when a tooth tip is at the angle."""
     pitch = arrays.tooth_pitch
@@ -88,7 +88,7 @@ def _is_engaged(arrays, angle, lag):
     return angle + turn * pitch < arrays.table.exit + lag
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _free_transition(arrays, duration, out):
     """Exact free motion of every mode over a duration, written into out (2n, 2n)."""
     out[:, :] = 0.0
@@ -105,19 +105,19 @@ def _free_transition(arrays, duration, out):
         out[2 * i + 1, 2 * i + 1] = c - a * s
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _set_responses(transition, from_left, from_right, found, at_left, at_right):
     transition[:, :] = found
     from_left[:, :] = at_left
     from_right[:, :] = at_right
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _first_order_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
     first_order_step(arrays, stiffness, dashpot, duration, transition, left, right, work)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _other_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
     if scheme.number == CONSTANT:
         found, constant, _, _ = semi_discretized(arrays, stiffness, dashpot, duration)
@@ -154,7 +154,7 @@ def _take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, r
     return stepped
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _bend(excess, from_left, from_right, from_further, before):
     """Turn the line over a step into a parabola through a node a step further on, or before.
 
@@ -169,7 +169,7 @@ def _bend(excess, from_left, from_right, from_further, before):
         from_right[:, :] -= excess
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
     """Number of steps of each interval, negative where no tooth cuts."""
     counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
@@ -182,7 +182,7 @@ def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
     return counts
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps):
     """Assemble the steps of one tooth period as a `Monodromy`, by a scheme of `step_schemes`.
 
@@ -269,7 +269,7 @@ def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps)
     )
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def record_motion(output, state, motion):
     """Set motion (r,) to that of the tool point."""
     rank, size = output.shape
@@ -305,14 +305,14 @@ def advance_step(period, step, vector, state, next_state):
     state[:] = next_state
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def monodromy_scratch(period):
     """Scratch arrays of `apply_monodromy`."""
     size = period.from_left.shape[1]
     return np.empty(size), np.empty(size)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def apply_monodromy(period, vector, out, scratch):
     """Set out to the image of the vector after one tooth period.
 
@@ -331,14 +331,14 @@ def apply_monodromy(period, vector, out, scratch):
     out[:size] = state
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def first_check(period):
     """Dimension of the space at which its dominant eigenpair is first searched."""
     # weakly damped modes keep as many multipliers near the unit circle as there are states
     return _FIRST_CHECK + period.output.shape[1]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def start_vector(period):
     """A fixed pseudo-random state and delayed motion."""
     _, size, rank = period.from_left.shape

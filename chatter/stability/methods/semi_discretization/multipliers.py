@@ -105,12 +105,13 @@ def converged_multiplier(
 
 def chatter_frequency(arrays: MillingArrays, speed: float, depth: float) -> float:
     """Chatter frequency (Hz) at a point; see `frequency_of_motion`."""
-    steps = 2 * int(automatic_steps(arrays, np.array([speed]))[0])
-    value, motion, duration = drivers.dominant_motion(FIRST_ORDER, arrays, speed, depth, steps)
+    point = np.array([speed]), np.array([depth])
+    steps = 2 * automatic_steps(arrays, point[0])
+    value, motion, duration = drivers.multipliers_at(FIRST_ORDER, arrays, *point, steps, 1, steps)
     time = np.concatenate([[0.0], np.cumsum(duration)])
     weight = 0.5 * (np.append(duration, 0.0) + np.insert(duration, 0, 0.0))
     return frequency_of_motion(
-        value, float(time[-1]), time, motion, weight, arrays.natural_frequency
+        complex(value[0]), float(time[-1]), time, motion, weight, arrays.natural_frequency
     )
 
 
@@ -158,7 +159,8 @@ def _at_points(
 
     def chunk(index: IntegerArray) -> ComplexArray:
         points = speeds[index], depths[index], steps[index]
-        values = [drivers.multipliers_at(scheme, arrays, *points, r) for r in refinements]
+        once = np.ones_like(index)
+        values = [drivers.multipliers_at(scheme, arrays, *points, r, once)[0] for r in refinements]
         if len(values) == 1:
             return values[0]
         coarse, fine = values

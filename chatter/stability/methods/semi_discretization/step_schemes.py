@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import KERNEL
+from chatter.engine.presets import INNER_KERNEL
 
 
 class FirstOrder(NamedTuple):
@@ -39,7 +39,7 @@ FIRST_ORDER, ZEROTH_ORDER = FirstOrder(), OtherScheme(CONSTANT)
 SECOND_ORDER, FULL_DISCRETIZATION = OtherScheme(PARABOLA, third_nodes=1), OtherScheme(FULL)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _generator(arrays, stiffness, dashpot, generator, gain):
     """Fill the state matrix (2n, 2n) and the input matrix (2n, r) of a unit force."""
     modes, rank = arrays.shape.shape
@@ -61,7 +61,7 @@ def _generator(arrays, stiffness, dashpot, generator, gain):
                     generator[2 * i + 1, 2 * j + 1] -= push * dashpot[k, m] * arrays.shape[j, m]
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _exponential(a):
     """Matrix exponential by scaling, a Taylor series and squaring."""
     n = a.shape[0]
@@ -79,7 +79,7 @@ def _exponential(a):
     return out
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _exact(generator, gain, duration):
     """Propagator, and what unit inputs 1, s/h and (s/h)^2 make over a step of length h."""
     size, rank = gain.shape
@@ -95,7 +95,7 @@ def _exact(generator, gain, duration):
     return power[:size, :size].copy(), constant, ramp, square
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def semi_discretized(arrays, stiffness, dashpot, duration):
     """Propagator and responses to the delayed motion 1, s/h, (s/h)^2, in the cut."""
     modes, rank = arrays.shape.shape
@@ -104,7 +104,7 @@ def semi_discretized(arrays, stiffness, dashpot, duration):
     return _exact(generator, gain @ stiffness, duration)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def fully_discretized(arrays, stiffness, dashpot, duration):
     """Propagator and responses to the delayed motion at the left and the right end."""
     modes, rank = arrays.shape.shape

@@ -15,7 +15,7 @@ from numba import njit
 
 from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.engine.parallel import sweep
-from chatter.engine.presets import DRIVER, KERNEL
+from chatter.engine.presets import DRIVER, INNER_KERNEL
 from chatter.stability.methods.zeroth_order.kernels import order_like
 
 _ROOT_SWEEPS = 60
@@ -28,7 +28,7 @@ _LARGEST_CHANGE = 0.1
 _LATTICE_PHASE = 0.5
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def small_eigenvalues(matrix, out):
     """Set out (n,) to the eigenvalues of a complex matrix (n, n), n at most 3."""
     n = matrix.shape[0]
@@ -65,7 +65,7 @@ def small_eigenvalues(matrix, out):
     out[0], out[1], out[2] = x * size, y * size, z * size
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _inverse_depths(omega, receptance, delays, means, speed, before, now):
     """Set now (r,) to the inverse critical depths at a line, in the order of those before."""
     rank = receptance.shape[0]
@@ -87,7 +87,7 @@ def _inverse_depths(omega, receptance, delays, means, speed, before, now):
     order_like(before, now)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _lowest_between(omega, receptance, delays, means, speed, first, last, before, now):
     """Lowest limit between two lines and its frequency (rad/s), and whether there may be any."""
     depth, frequency = np.inf, np.nan

@@ -5,31 +5,31 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import DRIVER, KERNEL
+from chatter.engine.presets import DRIVER, INNER_KERNEL
 
 _BISECTIONS = 48
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _regeneration_phase(real, imag):
     """Angle theta in (0, 2 pi) with w (1 - exp(-i theta)) = z, for Re z > 0."""
     return 2.0 * math.atan2(real, imag)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _depth(real, imag):
     """Depth w with w (1 - exp(-i theta)) = z."""
     return (real * real + imag * imag) / (2.0 * real)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _excess_phase(delay, omega, step, start, change, t):
     real = start.real + t * change.real
     imag = start.imag + t * change.imag
     return (omega + t * step) * delay - _regeneration_phase(real, imag)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
     """Lower the limit by the lobes that cross the speed between two frequency lines."""
     # keep to the part of the interval where the depth is positive
@@ -61,7 +61,7 @@ def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
     return limit, frequency
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def order_like(before, now):
     """Reorder values (r,) in position, each next to that before it."""
     for branch in range(now.shape[0] - 1):
@@ -79,7 +79,7 @@ def order_like_neighbours(eigenvalues):
         order_like(eigenvalues[line - 1], eigenvalues[line])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _no_lobe_between(omega, phase, line, branch, delay):
     """Quick refusal: True where no lobe can cross the speed between two lines."""
     a, b = phase[line, branch], phase[line + 1, branch]
