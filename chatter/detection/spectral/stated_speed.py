@@ -48,6 +48,10 @@ _AS_WELL, _MOST_SLOWER = 0.85, 3
 _AS_GOOD = 0.85
 #: relative uncertainty of a speed that many lines show; relative difference of one and the same
 _READ, _SAME = 3e-4, 5e-3
+#: standard deviations from which a spacing near the stated speed, though not the same, is it
+_BEYOND_DOUBT = 25.0
+#: share of the power from which a line off the harmonics is set aside with its multiples
+_LARGE = 0.3
 #: harmonics of the teeth, and their logarithm above the others, by which runout is seen
 _FEWEST, _STANDS_OUT = 3, 1.0
 
@@ -99,13 +103,53 @@ class LinesOfRecord:
         self._stated = stated
         self._teeth = teeth
         self._power, self._above = mean_of(frames, slice(None))
-        if rest is not None:
-            of_cut = self._power > RATIO_AT_REST * rest
-            self._above = np.where(of_cut, self._above, 0.0)
-            frames = frames._replace(above=np.where(of_cut, frames.above, 0.0))
         self._frames = frames
-        self._autocorrelation = line_autocorrelations(frames).sum(axis=0)
+        if rest is not None:
+            self._leave_out(self._power <= RATIO_AT_REST * rest)
+        self._autocorrelation = line_autocorrelations(self._frames).sum(axis=0)
+        self._set_chatter_aside()
         self._lines = np.clip(self._above - _COUNTS, 0.0, _AT_MOST)
+        self._confirmed = self._confirmed_by_lines()
+
+    def _leave_out(self, bins: NDArray[np.bool_]) -> None:
+        """Lines in some bins are none."""
+        self._above = np.where(bins, 0.0, self._above)
+        self._frames = self._frames._replace(above=np.where(bins, 0.0, self._frames.above))
+
+    def _set_chatter_aside(self) -> None:
+        """Leave a large line off the harmonics out, with its multiples, if the others suffice.
+
+        Its multiples are a spacing too, and speeds near the stated one may have them all as
+        harmonics. The others suffice where they show the same speed near the stated one.
+        """
+        whole, before = self._frames, self._above
+        found = self._best_about_stated(self._autocorrelation)
+        if not found.significance > CERTAIN:
+            return
+        comb = Comb(found.frequency, found.frequency * (self._teeth or 1), _READ, whole.half_width)
+        line = strongest_line(self._power, before, whole.frequency, comb)
+        if not line.alone > _LARGE:
+            return
+        order = np.maximum(np.round(whole.frequency / line.frequency), 1.0)
+        self._leave_out(np.abs(whole.frequency - order * line.frequency) < whole.half_width)
+        others = line_autocorrelations(self._frames).sum(axis=0)
+        again = self._best_about_stated(others)
+        if again.significance > CERTAIN and _is_same(again.frequency, found.frequency):
+            self._autocorrelation = others
+        else:
+            self._frames, self._above = whole, before
+
+    def _best_about_stated(self, autocorrelation: Array) -> Spacing:
+        """Speed near the stated one by the spacing of lines."""
+        bounds = self._stated * (1.0 - ABOUT_GIVEN), self._stated * (1.0 + ABOUT_GIVEN)
+        return best_spacing(autocorrelation, self._frames.step, *bounds, self._teeth or 1)
+
+    def _confirmed_by_lines(self) -> float | None:
+        """Speed near the stated one that the lines leave no doubt of, Hz."""
+        found = self._best_about_stated(self._autocorrelation)
+        is_stated = _is_same(found.frequency, self._stated)
+        least = CERTAIN if is_stated else _BEYOND_DOUBT
+        return found.frequency if found.significance > least else None
 
     def near(self, frequency: float, within: float = ABOUT_GIVEN) -> Explanation:
         """Best explanation by a speed near one, Hz, of a relative difference at the most."""
@@ -116,10 +160,18 @@ class LinesOfRecord:
             found.append(self._explanation(spacing, parts))
         return max(found, key=lambda one: one.quality)
 
+    def _own(self) -> Explanation:
+        """Explanation by a speed near the stated one: by that which the lines confirm if any."""
+        if self._confirmed is None:
+            return self.near(self._stated)
+        return self.near(self._confirmed, _SAME)
+
     def corrected(self, frequency: float) -> float:
         """Speed near the stated one that explains the lines far better than this one does, Hz."""
+        if self._confirmed is not None and _is_same(frequency, self._confirmed):
+            return frequency
         best = self.near(self._stated)
-        if abs(best.frequency / frequency - 1.0) < _SAME or best.spacing.significance < CERTAIN:
+        if _is_same(best.frequency, frequency) or best.spacing.significance < CERTAIN:
             return frequency
         own = self.near(frequency, _SAME)
         return best.frequency if best.quality > _BETTER * own.quality else frequency
@@ -129,10 +181,10 @@ class LinesOfRecord:
         spacing = self._spacing()
         if not spacing.significance > CERTAIN:
             return None
-        own = self.near(self._stated)
+        own = self._own()
         parts = self._divisors() if self._teeth is None else [1, self._teeth]
         natural = [spacing.frequency / one for one in parts]
-        if any(abs(one / own.frequency - 1.0) < _SAME for one in natural):
+        if any(_is_same(one, own.frequency) for one in natural):
             return None
         each = [self._explanation(spacing, one) for one in self._divisors()]
         best = max(one.explained for one in each)
@@ -144,6 +196,8 @@ class LinesOfRecord:
         ]
         if slower and max(one.quality for one in each) > own.quality / _BETTER:
             return OtherSpeed(max(slower), spacing.frequency, SLOWER)
+        if self._confirmed is not None and abs(speed / own.frequency - 1.0) < ABOUT_GIVEN:
+            return None
         if any(self._is_better(one, own) for one in each):
             return OtherSpeed(speed, spacing.frequency, REFUTED)
         if _is_multiple(spacing.frequency, own.frequency) and speed > own.frequency:
@@ -154,7 +208,7 @@ class LinesOfRecord:
         """Whether the lines, as far apart as those of another speed, fit it far better."""
         bounds = other.spacing * (1.0 - _SAME), other.spacing * (1.0 + _SAME)
         spacing = best_spacing(self._autocorrelation, self._frames.step, *bounds)
-        own = self.near(self._stated)
+        own = self._own()
         each = [self._explanation(spacing, parts) for parts in self._divisors()]
         return any(self._is_better(one, own) for one in each)
 
@@ -270,6 +324,11 @@ class LinesOfRecord:
         chance = float(on.mean())
         share = float(self._lines[on].sum()) / max(float(self._lines.sum()), 1e-300)
         return max(share - chance, 0.0) / max(1.0 - chance, 1e-9)
+
+
+def _is_same(one: float, other: float) -> bool:
+    """Whether two frequencies are those of one speed."""
+    return abs(one / other - 1.0) < _SAME
 
 
 def _is_multiple(one: float, other: float, most: int = 1000) -> bool:

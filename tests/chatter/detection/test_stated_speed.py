@@ -168,3 +168,24 @@ def test_a_speed_that_no_lines_confirm_calls_no_chatter_stable():
     assert not any(one.verdict == "stable" for one in found.segments)
     assert any("check --spindle-speed and --teeth" in one.reason for one in found.segments)
     assert detected(recording, revolution, teeth).verdict == "chatter"
+
+
+@pytest.mark.parametrize(("seed", "size", "hiss"), [(0, 3.0, 0.2), (1, 3.0, 0.6)])
+def test_chatter_in_a_short_record_is_found_at_a_speed_that_its_other_lines_confirm(
+    seed, size, hiss
+):
+    # a chatter line and its multiples are a spacing of their own, and may refute no true speed
+    random = np.random.default_rng(seed)
+    time = clock(1.5)
+    revolution, teeth, frequency = 27.6, 6, 898.9
+    forced = 0.6 * forced_cut(random, time, revolution, teeth, 0.3) + noise(random, time, hiss)
+    multiples = ((1, 1.0), (2, 0.25), (3, 0.15), (4, 0.1))
+    lines = [
+        share * chatter_line(random, time, k * frequency, teeth * revolution, 0.1)
+        for k, share in multiples
+    ]
+    for values, verdict in ((forced + size * sum(lines), "chatter"), (forced, "stable")):
+        recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+        found = detected(recording, revolution, teeth)
+        assert found.verdict == verdict
+        assert found.evidence.revolution.mean == pytest.approx(revolution, rel=2e-3)
