@@ -57,6 +57,10 @@ class Table:
         """Name a row, from 0, as in messages."""
         return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
 
+    def _named(self, index: int) -> str:
+        """Column as in messages: its name, or its number where it has none."""
+        return self.columns[index].name or f"column {index + 1}"
+
     def numbers(self, index: int) -> Array:
         """Cells of a column as finite numbers.
 
@@ -73,7 +77,8 @@ class Table:
             cell = str(cells[wrong[0]]).strip()
             finite = "finite " if is_number(cell) else ""
             raise MeasurementError(
-                f"{self.path}: {self.where(int(wrong[0]))}: {cell[:40]!r} is not a {finite}number"
+                f"{self.path}: {self.where(int(wrong[0]))}, {self._named(index)}: {cell[:40]!r} is "
+                f"not a {finite}number"
             )
         far = np.abs(values) > LARGEST
         if np.any(far):

@@ -13,6 +13,7 @@ from chatter.description.given_path import path_given
 from chatter.description.given_values import whole_number_given
 from chatter.description.units import QuantityError, parse
 from chatter.detection.spectral.frame_evidence import evidence_of
+from chatter.detection.spectral.overload import judged_by_range
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, Segment
 from chatter.detection.spectral.two_speeds import judged
@@ -47,7 +48,8 @@ def detect(
     recording : path or Recording
         File of any format that holds signals, or the signals.
     spindle_speed : str or float, optional
-        ``"1656 rpm"``, or rad/s; by default of the case, of a tacho in the file, or by the lines.
+        ``"1656 rpm"``, or rad/s; by default of the case, of a tacho or a measured speed in the
+        file, or by the lines.
     teeth : int, optional
         By default of the case. Without them no flip is recognised and no speed is proposed.
     case : path or Case, optional
@@ -77,9 +79,11 @@ def detect(
         rate = sampling_frequency(sampling_rate)
         recording = path_given(recording, "a recording")
         recording = read_recording(recording, channels, rate, columns)
+    if given is None:
+        given = recording.spindle_frequency
     _refuse_unseen(recording, given)
     evidence = evidence_of(recording, given, teeth)
-    segments = tuple(judged(evidence))
+    segments = judged_by_range(judged(evidence), recording)
     return DetectedChatter(
         recording, evidence, segments, given, case, _advice(segments, evidence.teeth, case)
     )

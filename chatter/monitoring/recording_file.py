@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from chatter.description.units import dimension_of, measured_unit
 from chatter.detection.spectral.recording import Recording
 from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import Column, Table
+from chatter.io.trace_headings import split_trace_heading, unit_of_trace
 from dynamics.frf.container import MeasurementError
 
 #: quantity -> SI unit by whose dimension a column is recognised
@@ -40,13 +42,17 @@ _NAMES = {
     "current": r"(i\d*$|cur)",
     "power": r"(p\d*$|pow)",
 }
-_TIME = re.compile(r"\s*(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
+_TIME = re.compile(r"\s*(.*\.)?(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
 _TACHO = re.compile(r"\s*(tacho.*|trigger|once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.I)
+#: names of a measured speed of the spindle, whose unit is one of turning
+_SPEED = re.compile(r"tacho|spindle|spindel|speed|drehzahl|rpm|n\b", re.IGNORECASE)
 #: channels that follow the tool: motor currents and power are read only where there are none
 _SLOW = ("current", "power")
 _FEWEST_SAMPLES = 2
 #: relative scatter of the steps of time that counts as uniform
 _UNIFORM = 0.01
+#: last digit of a rounded time in its largest step, at the most
+_MOST_ROUNDED = 2.5
 #: samples of an even clock for each that was recorded: where there are more the recording has gaps
 _MOST_FILLED = 4.0
 
@@ -93,19 +99,22 @@ def read_recording(
 def _recording(
     path: Path, table: Table, wanted: Sequence[str], sampling_rate: float | None
 ) -> Recording:
+    table = replace(table, columns=tuple(map(_with_unit, table.columns)))
     numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
     time = _time(path, table, numbers, sampling_rate)
-    tacho = next((numbers[one.name] for one in table.columns if _TACHO.fullmatch(one.name)), None)
+    tacho = next((numbers[one.name] for one in table.columns if _is_tacho(one)), None)
     _require_signal(path, table, numbers)
     chosen = _chosen(path, _usable(table, numbers), wanted)
     values = np.stack([one.values for one in chosen], axis=1)
     steps = np.diff(time)
     step = float(np.median(steps)) if steps.size else math.nan
-    if steps.size and not np.all(steps > 0.0):
+    if _is_rounded(time):
+        step = float((time[-1] - time[0]) / (time.size - 1))
+    elif steps.size and not np.all(steps > 0.0):
         raise InputError(
             f"{path}: the time does not increase at {table.where(int(np.argmin(steps)) + 1)}"
         )
-    if steps.size and steps.max() - steps.min() > _UNIFORM * step:
+    elif steps.size and steps.max() - steps.min() > _UNIFORM * step:
         _refuse_gaps(path, table, steps, step)
         even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
         values = np.stack([np.interp(even, time, one) for one in values.T], axis=1)
@@ -113,7 +122,47 @@ def _recording(
     else:
         step = float((time[-1] - time[0]) / max(time.size - 1, 1))
     names, quantities = zip(*((one.name, one.quantity) for one in chosen), strict=True)
-    return Recording(str(path), step, names, quantities, values, float(time[0]), tacho)
+    speed = _speed(table, numbers)
+    return Recording(str(path), step, names, quantities, values, float(time[0]), tacho, speed)
+
+
+def _with_unit(column: Column) -> Column:
+    """Column whose unit may stand behind a slash: ``"Zeit/ms"``."""
+    if column.content is not None or column.unit:
+        return column
+    name, unit = split_trace_heading(column.heading)
+    return replace(column, heading=f"{name} [{unit}]") if unit else column
+
+
+def _is_tacho(column: Column) -> bool:
+    """Whether a column has the pulses of a tacho, and not the speed by it."""
+    return bool(_TACHO.fullmatch(column.name)) and not _is_of_turning(column)
+
+
+def _is_of_turning(column: Column) -> bool:
+    """Whether the unit of a column is one of a speed of turning."""
+    unit = unit_of_trace(column.unit)
+    return unit is not None and unit.has_angle and unit.dimension == dimension_of("rad/s")
+
+
+def _speed(table: Table, numbers: dict[str, Array]) -> float | None:
+    """Median of a measured speed of the spindle while it turns, Hz; None where there is none."""
+    for column in table.columns:
+        if _SPEED.match(column.name) and _is_of_turning(column):
+            values = np.abs(numbers[column.name]) * unit_of_trace(column.unit).factor
+            turning = values[values > 0.5 * values.max()]
+            return float(np.median(turning)) / math.tau if turning.size else None
+    return None
+
+
+def _is_rounded(time: Array) -> bool:
+    """Whether a time rises evenly but for the rounding of what was written."""
+    steps = np.diff(time)
+    quantum = float(steps[steps > 0.0].min()) if np.any(steps > 0.0) else 0.0
+    if time.size < _FEWEST_SAMPLES or not steps.min() >= 0.0:
+        return False
+    even = np.linspace(time[0], time[-1], time.size)
+    return float(np.abs(time - even).max()) <= quantum and steps.max() < _MOST_ROUNDED * quantum
 
 
 def _refuse_gaps(path: Path, table: Table, steps: Array, step: float) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from chatter.description.case import Case
 from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.overload import NOTED, overloaded
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
 from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
@@ -152,6 +153,12 @@ class DetectedChatter(NotebookResult):
             notes.append(
                 "the spindle speed is the spacing of the lines: that of a revolution, or of "
                 "several teeth; state --spindle-speed and --teeth for better verdicts"
+            )
+        share = float(overloaded(self.recording).mean())
+        if share > NOTED:
+            notes.append(
+                f"{share:.0%} of the samples stand at the ends of the range: the recorder was "
+                "overloaded"
             )
         if self.advice is not None and self.evidence.teeth is None:
             notes.append("state --teeth for the speeds that the chatter frequency proposes")

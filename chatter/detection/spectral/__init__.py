@@ -14,6 +14,7 @@ envelope             whether a line is a limit cycle or a mode that noise shakes
 line_of_cut          whether a line is that of a cut that chatters, or of the machine
 segments             segments of one verdict, their frequency, bifurcation and confidence
 two_speeds           the same where the lines speak for another speed than the stated one
+overload             samples at the ends of a recorder's range
 running_detection    a verdict every revolution while a recording goes on
 ==================== =========================================================================
 """

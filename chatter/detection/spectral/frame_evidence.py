@@ -274,10 +274,11 @@ def _with_speed(
         length = min(_UNKNOWN, recording.duration)
         frames = frames_of(recording, length, max(_HOP * length, recording.duration / _MOST_FRAMES))
     if recording.tacho is not None:
-        found = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
+        pulses = recording.tacho, recording.time_step, recording.start
+        found = from_tacho(*pulses, frames, given)
         if found is not None:
             frames = _frames(recording, found.mean, _REVOLUTIONS)
-            again = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
+            again = from_tacho(*pulses, frames, given)
             return frames, again, None
     if given is not None:
         return frames, *_stated_speed(recording, frames, given, teeth)

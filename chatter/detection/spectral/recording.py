@@ -46,6 +46,8 @@ class Recording:
         s, time of the first sample.
     tacho : (n,) array of float or None
         Once-per-revolution signal.
+    spindle_frequency : float or None
+        Hz, as measured beside the channels.
 
     Raises
     ------
@@ -60,6 +62,7 @@ class Recording:
     values: NDArray[np.float64]
     start: float = 0.0
     tacho: NDArray[np.float64] | None = None
+    spindle_frequency: float | None = None
 
     def __post_init__(self) -> None:
         count = len(self.values)

@@ -105,6 +105,11 @@ VARIATION, _TOGETHER = 0.015, 1
 #: share of the power of a line that a fraction of the spacing has to hold; what its frequency is
 #: known to, of a line width and relative by that of the spacing
 _LARGE, _LINE, _SPACING = 0.1, 0.2, 1.5e-4
+#: pulses that tell what is usual near one, relative difference of a period that misses one, and of
+#: neighbours of a spindle that turns; share of the periods that are as they should be
+_NEARBY, _MISSING, _STEADY, _MOST = 9, 0.25, 0.05, 0.6
+#: difference of a number of pulses a revolution from a whole one, and most that are told apart
+_WHOLE, _MOST_PULSES = 0.25, 8
 #: lowest and highest frequency of a spindle, Hz
 _SLOWEST, _FASTEST = 3.0, 700.0
 
@@ -235,25 +240,51 @@ def speed_of_frames(autocorrelation: Array, step: float, mean: float, teeth: int
     return own.frequency if found.score < BETTER * own.score else found.frequency
 
 
-def from_tacho(tacho: Array, time_step: float, start: float, frames: Frames) -> Revolution | None:
-    """Frequency over the frames by the rising edges of a once-per-revolution signal."""
+def from_tacho(
+    tacho: Array, time_step: float, start: float, frames: Frames, given: float | None = None
+) -> Revolution | None:
+    """Frequency over the frames by the rising edges of a signal with pulses at even angles.
+
+    One a revolution; several where the frequency that is given, Hz, says so. None of a signal that
+    has no such pulses, or so many that the speed does not tell how many.
+    """
+    times = _rising_edges(tacho, time_step, start)
+    if times.size < 3:
+        return None
+    middle, frequency = 0.5 * (times[1:] + times[:-1]), 1.0 / np.diff(times)
+    usual = scipy.ndimage.median_filter(frequency, min(_NEARBY, frequency.size | 1), mode="nearest")
+    is_usual = np.abs(frequency / usual - 1.0) < _MISSING
+    steady = np.abs(usual[1:] / usual[:-1] - 1.0) < _STEADY
+    if is_usual.mean() < _MOST or (steady.size and steady.mean() < _MOST):
+        return None
+    middle, frequency = middle[is_usual], frequency[is_usual]
+    pulses = _pulses(float(frequency.mean()), given)
+    frequency = frequency / pulses
+    mean = 1.0 / float(np.mean(1.0 / frequency))
+    if pulses > _MOST_PULSES or mean > _FASTEST:
+        return None
+    over = [
+        1.0 / np.mean(1.0 / frequency[near]) if near.any() else mean
+        for near in (np.abs(middle - t) <= 0.5 * frames.length for t in frames.time)
+    ]
+    return Revolution(np.array(over), _BY_TACHO, "tacho", mean)
+
+
+def _rising_edges(tacho: Array, time_step: float, start: float) -> Array:
+    """Times at which a signal rises through the middle of its range, s."""
     low, high = np.quantile(tacho, [0.02, 0.98])
     if not high > low:
         low, high = float(tacho.min()), float(tacho.max())
-    above = tacho > 0.5 * (low + high)
-    edges = np.flatnonzero(above[1:] & ~above[:-1]) + 1
-    if edges.size < 3:
-        return None
     level = 0.5 * (low + high)
+    above = tacho > level
+    edges = np.flatnonzero(above[1:] & ~above[:-1]) + 1
     before, after = tacho[edges - 1], tacho[edges]
-    times = start + (edges - 1 + (level - before) / (after - before)) * time_step
-    middle = 0.5 * (times[1:] + times[:-1])
-    frequency = 1.0 / np.diff(times)
-    mean = (times.size - 1) / (times[-1] - times[0])
-    over = [
-        frequency[np.abs(middle - t) <= 0.5 * frames.length].mean()
-        if (np.abs(middle - t) <= 0.5 * frames.length).any()
-        else mean
-        for t in frames.time
-    ]
-    return Revolution(np.array(over), _BY_TACHO, "tacho", float(mean))
+    return start + (edges - 1 + (level - before) / (after - before)) * time_step
+
+
+def _pulses(frequency: float, given: float | None) -> int:
+    """Pulses a revolution: those that a frequency that is given, Hz, has."""
+    if given is None:
+        return 1
+    ratio = frequency / given
+    return round(ratio) if ratio > 1.5 and abs(ratio - round(ratio)) < _WHOLE else 1

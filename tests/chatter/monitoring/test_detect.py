@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
+import scipy.io
 import scipy.io.wavfile
 
 import chatter
@@ -265,3 +266,74 @@ def test_a_slow_recording_has_a_single_band(rate):
         warnings.simplefilter("error", RuntimeWarning)
         found = chatter.detect(recording, teeth=2, spindle_speed="6000 rpm")
     assert [one.verdict for one in found.segments] == ["idle"]
+
+
+def pulses(per_revolution):
+    return np.mod(REVOLUTION * per_revolution * clock(3.0), 1.0) < 0.25
+
+
+TACHOS = [
+    (6, lambda: pulses(6)),
+    (60, lambda: pulses(60)),
+    ("noise", lambda: np.random.default_rng(3).standard_normal(int(3 * RATE))),
+    ("missing pulses", lambda: pulses(1) & (np.mod(REVOLUTION * clock(3.0), 7.0) > 1.0)),
+]
+
+
+@pytest.mark.parametrize(("kind", "signal"), TACHOS, ids=[str(one[0]) for one in TACHOS])
+def test_a_tacho_of_another_kind_does_not_hide_chatter(kind, signal):
+    _, values = made()
+    tacho = np.asarray(signal(), dtype=float)
+    recording = Recording(
+        "made", 1.0 / RATE, ("a",), ("acceleration",), values[:, None], 0.0, tacho
+    )
+    found = chatter.detect(recording, 60.0 * REVOLUTION * np.pi / 30.0, TEETH)
+    assert found.verdict == "chatter", kind
+    assert found.evidence.revolution.mean == pytest.approx(REVOLUTION, rel=3e-3)
+
+
+@pytest.mark.parametrize("heading", ["spindle speed [rpm]", "tacho [rpm]", "Drehzahl [1/min]"])
+def test_a_measured_speed_beside_the_signal_is_taken(tmp_path, heading):
+    time, values = made()
+    columns = np.c_[values, np.full(time.size, 60.0 * REVOLUTION)]
+    path = write_csv(tmp_path / "a.csv", f"Zeit/ms,ax [m/s^2],{heading}", 1e3 * time, columns)
+    found = chatter.detect(path, teeth=TEETH)
+    assert found.verdict == "chatter"
+    assert found.evidence.revolution.mean == pytest.approx(REVOLUTION, rel=3e-3)
+
+
+@pytest.mark.parametrize("digit", [1.5e-4, 1e-3])
+def test_a_time_that_was_rounded_is_even(tmp_path, digit):
+    time, values = made()
+    path = write_csv(tmp_path / "a.csv", "time [s],ax [g]", np.round(time / digit) * digit, values)
+    found = chatter.detect(path, f"{60.0 * REVOLUTION} rpm", TEETH)
+    assert found.verdict == "chatter"
+    assert found.recording.time_step == pytest.approx(1.0 / RATE, rel=1e-3)
+    assert found.segments[-1].chatter_frequency == pytest.approx(FREQUENCY, rel=2e-3)
+
+
+def test_an_overloaded_recorder_calls_nothing_stable():
+    _, values = made()
+    # all but the sign of the signal is lost, as by a telephone beside the machine
+    for level, least in ((0.02, "not judged"), (50.0, "chatter")):
+        clipped = np.clip(values, -level, level)[:, None]
+        recording = Recording("made", 1.0 / RATE, ("a",), ("sound",), clipped)
+        found = chatter.detect(recording, f"{60.0 * REVOLUTION} rpm", TEETH)
+        quiet = [one for one in found.segments if one.verdict in ("stable", "idle")]
+        assert found.verdict in (least, "chatter")
+        assert bool(quiet) == (level > 1.0)
+        assert any("overloaded" in one for one in found.notes) == (level < 1.0)
+
+
+def test_fields_of_a_structure_have_their_time(tmp_path):
+    time, values = made()
+    scipy.io.savemat(tmp_path / "a.mat", {"rec": {"time_ms": 1e3 * time, "mic": values}})
+    found = chatter.detect(tmp_path / "a.mat", f"{60.0 * REVOLUTION} rpm", TEETH)
+    assert found.verdict == "chatter"
+
+
+def test_a_cell_that_is_no_number_is_named_by_line_and_column(tmp_path):
+    text = "time [s],ax [g],temperature [degC]\n0,1,20\n0.001,2,nan\n"
+    (tmp_path / "a.csv").write_text(text)
+    with pytest.raises(InputError, match="line 3, temperature: 'nan' is not a finite number"):
+        chatter.detect(tmp_path / "a.csv")

@@ -94,7 +94,7 @@ HEAD = "frequency [Hz],real [m/N],imag [m/N]\n"
         (HEAD + "1,2,3\n2,inf,4\n", "line 3"),
         (HEAD + "1,2,3\n2,4\n", "line 3 has 2 columns"),
         (HEAD + "1,2,3\n2,,4\n", "line 3.*not a number"),
-        (HEAD + "1,2,3\n2,x,4\n", "line 3: 'x' is not a number"),
+        (HEAD + "1,2,3\n2,x,4\n", "line 3, real: 'x' is not a number"),
         (HEAD + "2,2,3\n1,3,4\n", "line 3.*must rise"),
         (HEAD + "1,2,3\n1,3,4\n", "must rise"),
         ("frequency [Hz],real [N/m],imag [N/m]\n1,2,3\n2,3,4\n", "'real'.*N/m"),
