@@ -101,6 +101,8 @@ SUMMING_KERNEL = {**INNER_KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: the same that allocate nothing: arrays taken out of the tables they are passed need no counting,
 #: which would cost more than what most of them do
 LEAF_KERNEL = {**INNER_KERNEL, **UNCOUNTED}
+#: the same where passing on the tables would cost more than what is done with them
+INLINED_LEAF_KERNEL = {**LEAF_KERNEL, "forceinline": True}
 #: functions with one caller, which becomes part of it
 SINGLE_KERNEL = {**INNER_KERNEL, "inline": "always"}
 #: loops over points, called from Python, in several threads at once

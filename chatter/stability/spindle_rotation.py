@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from chatter.engine.presets import INLINED_KERNEL, INNER_KERNEL, KERNEL
+from chatter.engine.presets import DRIVER, INLINED_KERNEL, INNER_KERNEL, KERNEL
 
-#: of the angle, the last that matters on the way to a time
-_SMALL_STEP = 1e-9
+#: of the angle, relative to it and to a radian: no more is left on the way to a time
+_ANGLE_LEFT = 1e-14
 #: variations in a period
 _MOST_CYCLES = 40
 #: a variation so many times the least period long meets the teeth at phases enough by itself
@@ -120,6 +120,17 @@ def spindle_rotation_at(variation, fit, speed, pattern):
     )
 
 
+@njit(**DRIVER)
+def fitted_periods(variation, fit, speeds, pattern):
+    """Tool periods and variations in a period of the cut at n speeds (rad/s), both (n,)."""
+    patterns = np.empty(speeds.shape[0], dtype=np.int64)
+    cycles = np.empty(speeds.shape[0], dtype=np.int64)
+    for i in range(speeds.shape[0]):
+        rotation = spindle_rotation_at(variation, fit, speeds[i], pattern)
+        patterns[i], cycles[i] = rotation.patterns, rotation.cycles
+    return patterns, cycles
+
+
 @njit(**INNER_KERNEL)
 def in_mean_angle(rotation):
     """The same rotation with the mean angle in place of time: the mean speed is 1."""
@@ -169,17 +180,33 @@ def speed_at(rotation, time):
     return rotation.speed * (1.0 + rotation.amplitude * wave)
 
 
+@njit(**INLINED_KERNEL)
+def swing_range(rotation):
+    """How far the angle gained and lost over a variation lies apart, over that of one variation."""
+    return 1.0 / math.pi if rotation.triangle == 0 else 0.25
+
+
+@njit(**INNER_KERNEL)
+def time_near(rotation, angle, time):
+    """Time at which the spindle has turned by an angle, s, searched from another on."""
+    if rotation.amplitude == 0.0:
+        return angle / rotation.speed
+    # Newton: of an error this share of its square is left at the most, rad
+    steepest = math.pi if rotation.triangle == 0 else 2.0
+    bend = steepest * rotation.amplitude * rotation.frequency
+    bend /= rotation.speed * (1.0 - rotation.amplitude) ** 2
+    for _ in range(60):
+        step = (angle_at(rotation, time) - angle) / speed_at(rotation, time)
+        time -= step
+        if bend * (rotation.speed * step) ** 2 < _ANGLE_LEFT * max(1.0, abs(angle)):
+            break
+    return time
+
+
 @njit(**KERNEL)
 def time_at(rotation, angle):
     """Time at which the spindle has turned by an angle, s."""
     time = angle / rotation.speed
     if rotation.amplitude == 0.0:
         return time
-    time -= (angle_at(rotation, time) - angle) / rotation.speed
-    for _ in range(60):
-        step = (angle_at(rotation, time) - angle) / speed_at(rotation, time)
-        time -= step
-        # the error of the next is as the square of that of the last
-        if abs(step) * rotation.speed < _SMALL_STEP * max(1.0, abs(angle)):
-            break
-    return time
+    return time_near(rotation, angle, time - (angle_at(rotation, time) - angle) / rotation.speed)

@@ -8,6 +8,7 @@ element_borders     where the cut asks for borders of elements
 element_layout      elements of a period, also at a varying speed
 element_response    exact response of a mode over an element, as a Chebyshev series
 coupling_assembly   couplings at the points of all elements, to now and to earlier motion
+edge_couplings      the same at one point of a period; tool_period_couplings
 coupling_structure  assemblies packed by structure and numbers
 element_assembly    matrices of the monodromy operator of a SIMD batch
 monodromy           the operator: state and earlier motion over one period

@@ -15,9 +15,9 @@ _HEADER = 5
 class CouplingAssemblies(NamedTuple):
     """Coupling assemblies of N points, P distinct ones, one behind the other."""
 
-    structure: IntegerArray  # see `packed_structure`
+    structure: IntegerArray  # see `packed_behind`
     first_structure: IntegerArray  # where that of each assembly begins (P + 1,)
-    number: Array  # see `packed_numbers`
+    number: Array  # the same
     first_number: IntegerArray  # (P + 1,)
     of_point: IntegerArray  # assembly of each point (N,)
 
@@ -42,62 +42,86 @@ def _append(part, out, at):
     return at + part.shape[0]
 
 
-@njit(**SINGLE_KERNEL)
-def packed_structure(layout, first_source, element, point):
-    """Pack what of an assembly is whole numbers."""
-    count = first_source[first_source.shape[0] - 1]
-    elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
-    out = np.empty(
-        _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
-    )
-    out[0], out[1], out[2] = elements, lengths, layout.cut_start.shape[0]
-    memory = 0
-    for entry in range(count):
-        memory = max(memory, -element[entry])
-    out[3], out[4] = count, memory
-    at = _append(layout.cut, out, _HEADER)
-    at = _append(layout.shape, out, at)
-    at = _append(layout.length_cuts, out, at)
-    at = _append(first_source, out, at)
-    at = _append(element[:count], out, at)
-    _append(point[:count], out, at)
-    return out
+@njit(**INNER_KERNEL)
+def empty_assemblies(points):
+    """Return room for no assemblies as yet, of so many points at the most."""
+    return CouplingAssemblies(
+        np.empty(0, dtype=np.int64), np.zeros(points + 1, dtype=np.int64), np.empty(0),
+        np.zeros(points + 1, dtype=np.int64), np.empty(points, dtype=np.int64),
+    )  # fmt: skip
 
 
-@njit(**SINGLE_KERNEL)
-def packed_numbers(layout, stiffness, dashpot, block, sources):
-    """Pack the reals of an assembly: period, lengths, starts, couplings, blocks of sources."""
-    kept = sources * block.shape[1] * block.shape[2]
-    out = np.empty(
-        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
-    )
+@njit(**INNER_KERNEL)
+def counted_assemblies(assemblies, count):
+    """Return the first of the assemblies, without the room beyond them."""
+    last, last_number = assemblies.first_structure[count], assemblies.first_number[count]
+    return CouplingAssemblies(
+        assemblies.structure[:last], assemblies.first_structure[: count + 1],
+        assemblies.number[:last_number], assemblies.first_number[: count + 1], assemblies.of_point,
+    )  # fmt: skip
+
+
+@njit(**INNER_KERNEL)
+def _with_room(array, used, needed, like_it):
+    """Return the array with room for more behind what is used, and for more like it if it grows."""
+    if used + needed <= array.shape[0]:
+        return array
+    larger = np.empty(max(used + needed * like_it, 2 * used), dtype=array.dtype)
+    larger[:used] = array[:used]
+    return larger
+
+
+@njit(**INNER_KERNEL)
+def packed_behind(assemblies, count, layout, couplings, first_source, sources):
+    """Pack an assembly behind the first ones; returns them with it.
+
+    What is whole numbers: counts of elements, lengths, elements in the cut, sources, and elements
+    before the period; the lists of `AssemblyStructure`. Reals: period, lengths (S,), starts and
+    lengths of the elements in the cut (E,), rad; stiffness (E p, r, r), dashpots (E p, r, r) times
+    the mean speed, blocks of the sources, N/m.
+    """
+    stiffness, block = couplings.stiffness, sources.block
+    used, used_numbers = assemblies.first_structure[count], assemblies.first_number[count]
+    entries = first_source[first_source.shape[0] - 1]
+    elements, lengths, cuts = layout.cut.shape[0], layout.length.shape[0], layout.cut_start.shape[0]
+    kept = entries * block.shape[1] * block.shape[2]
+    whole = _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * entries
+    reals = 1 + lengths + 2 * cuts + 2 * stiffness.size + kept
+    left = assemblies.of_point.shape[0] - count
+    packed = CouplingAssemblies(
+        _with_room(assemblies.structure, used, whole, left), assemblies.first_structure,
+        _with_room(assemblies.number, used_numbers, reals, left), assemblies.first_number,
+        assemblies.of_point,
+    )  # fmt: skip
+    packed.first_structure[count + 1] = used + whole
+    packed.first_number[count + 1] = used_numbers + reals
+    _pack_structure(layout, first_source, sources, packed.structure[used : used + whole])
+    out = packed.number[used_numbers : used_numbers + reals]
     out[0] = layout.period
     at = _append(layout.length, out, 1)
     at = _append(layout.cut_start, out, at)
     at = _append(layout.cut_length, out, at)
     at = _append(stiffness.reshape(stiffness.size), out, at)
-    at = _append(dashpot.reshape(stiffness.size), out, at)
+    at = _append(couplings.dashpot.reshape(stiffness.size), out, at)
     _append(block.reshape(block.size)[:kept], out, at)
-    return out
+    return packed
 
 
 @njit(**SINGLE_KERNEL)
-def packed_assemblies(structures, numbers, of_point):
-    """Lay lists of packed assemblies one behind the other.
-
-    `of_point` (N,) is the place in the lists of the assembly of each point.
-    """
-    count = len(structures)
-    first_structure = np.zeros(count + 1, dtype=np.int64)
-    first_number = np.zeros(count + 1, dtype=np.int64)
-    for assembly in range(count):
-        first_structure[assembly + 1] = first_structure[assembly] + structures[assembly].shape[0]
-        first_number[assembly + 1] = first_number[assembly] + numbers[assembly].shape[0]
-    structure, number = np.empty(first_structure[count], np.int64), np.empty(first_number[count])
-    for assembly in range(count):
-        _append(structures[assembly], structure, first_structure[assembly])
-        _append(numbers[assembly], number, first_number[assembly])
-    return CouplingAssemblies(structure, first_structure, number, first_number, of_point)
+def _pack_structure(layout, first_source, sources, out):
+    """Set `out` to what of an assembly is whole numbers."""
+    count = first_source[first_source.shape[0] - 1]
+    out[0], out[1], out[2] = layout.cut.shape[0], layout.length.shape[0], layout.cut_start.shape[0]
+    memory = 0
+    for entry in range(count):
+        memory = max(memory, -sources.element[entry])
+    out[3], out[4] = count, memory
+    at = _append(layout.cut, out, _HEADER)
+    at = _append(layout.shape, out, at)
+    at = _append(layout.length_cuts, out, at)
+    at = _append(first_source, out, at)
+    at = _append(sources.element[:count], out, at)
+    _append(sources.point[:count], out, at)
 
 
 @njit(**INNER_KERNEL)

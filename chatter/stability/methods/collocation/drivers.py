@@ -30,6 +30,7 @@ def element_multipliers(arrays, assemblies, speeds, frequency_wanted):
     frequency = np.full(n, np.nan)
     done = np.zeros(n, dtype=np.bool_)
     batch, batch_points = np.empty(BATCH_SIZE, dtype=np.int64), np.empty(BATCH_SIZE, dtype=np.int64)
+    workspace = np.empty(0)
     batch_speeds, with_frequency = np.empty((1, BATCH_SIZE)), np.empty(BATCH_SIZE)
     for first in range(n):
         if done[first]:
@@ -50,7 +51,9 @@ def element_multipliers(arrays, assemblies, speeds, frequency_wanted):
             point = batch[member] if member < count else first
             batch_points[member], batch_speeds[0, member] = point, speeds[point]
             wanted |= frequency_wanted[point]
-        period = build_batch_monodromy(arrays, assemblies, batch_points, batch_speeds)
+        period, workspace = build_batch_monodromy(
+            arrays, assemblies, batch_points, batch_speeds, workspace
+        )
         found = dominant_pairs(period, arrays.residual)
         if wanted:
             chatter_frequencies_of(

@@ -219,12 +219,25 @@ def _multiply_all(a, factor):
         store(a, i, load(a, i) * factor)
 
 
+@njit(**INNER_KERNEL)
+def _take(workspace, used, shape):
+    """Return an array of a shape out of a workspace; used (1,) is how much of it is."""
+    size = 1
+    for length in shape:
+        size *= length
+    first = used[0]
+    used[0] += size
+    return workspace[first : first + size].reshape(shape)
+
+
 @njit(**SINGLE_KERNEL)
-def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
+def build_batch_monodromy(arrays, assemblies, batch_points, speeds, workspace):
     """Assemble the `BatchMonodromy` of one period from `OperatorArrays` and `CouplingAssemblies`.
 
     `batch_points` (8,) are the points of the members, whose assemblies have the same structure;
-    `speeds` (1, 8) their mean spindle speeds, rad/s.
+    `speeds` (1, 8) their mean spindle speeds, rad/s. The matrices lie in the workspace, which is
+    returned along, larger where it has to be: new memory for every batch would cost as much as what
+    is done with it.
     """
     structure, table = arrays.structure, arrays.response
     packed = structure_at(assemblies, batch_points[0])
@@ -235,36 +248,48 @@ def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
     lengths, cuts, sources = packed[1], packed[2], packed[3]
     output, scale = motion_of_state(structure)
     slowness = 1.0 / load(speeds, 0)
-    durations = np.empty((lengths, BATCH_SIZE))
+    pairs, blocks = cuts * points * rank * rank, sources * rank * (values + rank)
+    rated = lengths if arrays.damped else 0
+    needed = lengths * (1 + 4 * modes + 2 * values * size + values * values)
+    needed += cuts * values * (values + size) + 2 * pairs + blocks
+    needed += rated * values * (values + size)
+    if needed * BATCH_SIZE > workspace.shape[0]:
+        workspace = np.empty(needed * BATCH_SIZE)
+    used = np.zeros(1, dtype=np.int64)
+    durations = _take(workspace, used, (lengths, BATCH_SIZE))
     _side_by_side(assemblies, batch_points, 1, lengths, durations)
     _multiply_all(durations, slowness)
-    pairs = cuts * points * rank * rank
-    stiffness, dashpot = np.empty((pairs, BATCH_SIZE)), np.empty((pairs, BATCH_SIZE))
+    stiffness = _take(workspace, used, (pairs, BATCH_SIZE))
+    dashpot = _take(workspace, used, (pairs, BATCH_SIZE))
     first = 1 + lengths + 2 * cuts
     _side_by_side(assemblies, batch_points, first, pairs, stiffness)
     _side_by_side(assemblies, batch_points, first + pairs, pairs, dashpot)
-    block = np.empty((sources * rank * (values + rank), BATCH_SIZE))
-    _side_by_side(assemblies, batch_points, first + 2 * pairs, block.shape[0], block)
+    block = _take(workspace, used, (blocks, BATCH_SIZE))
+    _side_by_side(assemblies, batch_points, first + 2 * pairs, blocks, block)
     _multiply_all(stiffness, 1.0 / scale)
     _multiply_all(dashpot, slowness)
     _multiply_all(block, 1.0 / scale)
     period = BatchMonodromy(
         assembly,
-        np.empty((lengths, modes, 2, 2, BATCH_SIZE)),
-        np.empty((lengths, values, size, BATCH_SIZE)),
-        np.zeros((lengths, values, values, BATCH_SIZE)),
-        np.empty((lengths, size, values, BATCH_SIZE)),
-        np.zeros((cuts, values, values, BATCH_SIZE)), np.zeros((cuts, values, size, BATCH_SIZE)),
+        _take(workspace, used, (lengths, modes, 2, 2, BATCH_SIZE)),
+        _take(workspace, used, (lengths, values, size, BATCH_SIZE)),
+        _take(workspace, used, (lengths, values, values, BATCH_SIZE)),
+        _take(workspace, used, (lengths, size, values, BATCH_SIZE)),
+        _take(workspace, used, (cuts, values, values, BATCH_SIZE)),
+        _take(workspace, used, (cuts, values, size, BATCH_SIZE)),
         block.reshape((sources, rank, values + rank, BATCH_SIZE)), output,
     )  # fmt: skip
-    rated = lengths if arrays.damped else 0
     rates = _Rates(
-        np.empty((rated, values, size, BATCH_SIZE)), np.zeros((rated, values, values, BATCH_SIZE))
+        _take(workspace, used, (rated, values, size, BATCH_SIZE)),
+        _take(workspace, used, (rated, values, values, BATCH_SIZE)),
     )
+    for added_up in (period.motion_of_force, period.factors, rates.of_force):
+        added_up[:] = 0.0
+    period.couple[:] = 0.0
     _fill_lengths(structure, table, durations, assembly.length_cuts, scale, period, rates)
     couplings = (cuts * points, rank, rank, BATCH_SIZE)
     _enter_elements(period, rates, stiffness.reshape(couplings), dashpot.reshape(couplings))
-    return period
+    return period, workspace
 
 
 @njit(**SINGLE_KERNEL)

@@ -143,3 +143,16 @@ def empty_borders():
     """Borders before there are any."""
     whole = np.empty(0, dtype=np.int64)
     return PeriodBorders(np.empty(0), whole, whole)
+
+
+@njit(**LEAF_KERNEL)
+def same_borders(one, other):
+    """Whether borders and the intervals between them are the same."""
+    if one.angle.shape[0] != other.angle.shape[0]:
+        return False
+    same = True
+    for i in range(one.angle.shape[0]):
+        same = same and one.angle[i] == other.angle[i] and one.levels[i] == other.levels[i]
+    for i in range(one.engaged.shape[0]):
+        same = same and one.engaged[i] == other.engaged[i]
+    return same

@@ -15,7 +15,7 @@ from numba import njit
 from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.element_borders import LEVEL_RATIO, SAME_BORDER
-from chatter.stability.spindle_rotation import speed_at, time_at
+from chatter.stability.spindle_rotation import speed_at, swing_range, time_near
 
 #: an element turns the spindle by no more than this, rad
 _LONGEST_ANGLE = 0.9
@@ -41,6 +41,10 @@ class ElementLayout(NamedTuple):
     length_cuts: IntegerArray  # 1 where an element in the cut has the length (S,)
     cut_start: Array  # start of the elements in the cut, rad (E,)
     cut_length: Array  # rad (E,)
+    cut_angle: Array  # of the spindle where the span of each starts, rad (E,)
+    span: IntegerArray  # of those in the cut among the spans, -1 for a part of one (E,)
+    span_start: Array  # of the Q spans in the cut that a period of the tool has, rad (Q,)
+    span_length: Array  # rad that the spindle turns (Q,)
     period: float  # rad
 
 
@@ -59,16 +63,13 @@ def speed_step(speed, step):
 
 
 @njit(**LEAF_KERNEL)
-def _longest_span(rotation, tool_period, start, end):
-    """Longest mean angle that the spindle needs from one angle to another in any tool period."""
-    longest = end - start
-    if rotation.amplitude > 0.0:
-        for pattern in range(rotation.patterns):
-            turned = pattern * tool_period
-            longest = max(
-                longest, time_at(rotation, turned + end) - time_at(rotation, turned + start)
-            )
-    return longest
+def _longest_span(rotation, angle):
+    """Mean angle that the spindle needs for an angle at the most, wherever it begins."""
+    if rotation.amplitude == 0.0:
+        return angle
+    # at the slowest speed, or as far as the spindle lags at one end and leads at the other
+    slowest = angle / (1.0 - rotation.amplitude)
+    return min(slowest, angle + rotation.amplitude / rotation.frequency * swing_range(rotation))
 
 
 @njit(**INNER_KERNEL)
@@ -84,7 +85,7 @@ def element_counts(cut, borders, rotation, speed, depth):
         counts[i] = 1
         if borders.engaged[i] == 1:
             start, end = borders.angle[i], borders.angle[i + 1]
-            span = _longest_span(rotation, arrays.period_angle, start, end) / speed
+            span = _longest_span(rotation, end - start) / speed
             need = max(span * wavelengths / cut.longest, (end - start) / _LONGEST_ANGLE)
             counts[i] = max(1, math.ceil(need - 1e-9))
     return counts
@@ -142,9 +143,26 @@ def _lasting(rotation, start, angle, length):
     """Mean angle from one on, at a spindle angle, that the spindle needs for some more."""
     if rotation.amplitude == 0.0:
         return length
+    even = length / speed_at(rotation, start)
     if length < _EVEN:
-        return length / speed_at(rotation, start)
-    return time_at(rotation, angle + length) - start
+        return even
+    return time_near(rotation, angle + length, start + even) - start
+
+
+@njit(**INNER_KERNEL)
+def _engaged_only(spans):
+    """Spans in the cut, and the number of each among them, -1 for none (M,)."""
+    number = np.full(spans.start.shape[0], -1, dtype=np.int64)
+    count = 0
+    for i in range(number.shape[0]):
+        if spans.engaged[i] == 1:
+            number[i] = count
+            count += 1
+    start, length = np.empty(count), np.empty(count)
+    for i in range(number.shape[0]):
+        if number[i] >= 0:
+            start[number[i]], length[number[i]] = spans.start[i], spans.length[i]
+    return start, length, number
 
 
 @njit(**INNER_KERNEL)
@@ -155,30 +173,41 @@ def element_layout(borders, counts, rotation, tool_period):
     rad.
     """
     spans = _tool_period_spans(borders, counts)
+    span_start, span_length, number_of_span = _engaged_only(spans)
     # every half of a cycle has a corner
     room = rotation.patterns * spans.start.shape[0] + 2 * rotation.cycles * rotation.triangle
-    start, length = np.empty(room), np.empty(room)
-    number = np.full(room, -1, dtype=np.int64)
-    m, cuts = 0, 0
+    start, length, turned = np.empty(room), np.empty(room), np.empty(room)
+    number, whole = np.full(room, -1, dtype=np.int64), np.full(room, -1, dtype=np.int64)
+    m, cuts, begin = 0, 0, 0.0
     for pattern in range(rotation.patterns):
         for i in range(spans.start.shape[0]):
             angle = pattern * tool_period + spans.start[i]
-            begin = time_at(rotation, angle)
+            # it begins where the last one ended, but for rounding
+            begin = time_near(rotation, angle, begin)
             left = _lasting(rotation, begin, angle, spans.length[i])
+            complete = True
             while left > 0.0:
                 part = _until_corner(rotation, begin, left)
-                start[m], length[m] = begin, part
+                complete = complete and part == left
+                start[m], length[m], turned[m] = begin, part, angle
                 if spans.engaged[i] == 1:
                     number[m] = cuts
+                    whole[m] = number_of_span[i] if complete else -1
                     cuts += 1
                 begin, left, m = begin + part, left - part, m + 1
-    shape, cut_start, cut_length = np.empty(m, dtype=np.int64), np.empty(cuts), np.empty(cuts)
+    shape = np.empty(m, dtype=np.int64)
+    cut_start, cut_length, cut_angle = np.empty(cuts), np.empty(cuts), np.empty(cuts)
+    span = np.empty(cuts, dtype=np.int64)
     for i in range(m):
         if number[i] >= 0:
             cut_start[number[i]], cut_length[number[i]] = start[i], length[i]
+            cut_angle[number[i]], span[number[i]] = turned[i], whole[i]
     distinct, of_cut = _shapes(length, number, m, rotation.amplitude == 0.0, shape)
     period = rotation.patterns * tool_period
-    return ElementLayout(number[:m], shape, distinct, of_cut, cut_start, cut_length, period)
+    return ElementLayout(
+        number[:m], shape, distinct, of_cut, cut_start, cut_length, cut_angle, span,
+        span_start, span_length, period,
+    )  # fmt: skip
 
 
 @njit(**SINGLE_KERNEL)

@@ -31,6 +31,7 @@ class ElementPoints(NamedTuple):
     position: Array  # (p+1,)
     weight: Array  # of the Gauss quadrature (p,)
     barycentric: Array  # weights of the polynomial through all points (p+1,)
+    gauss_weight: Array  # of that through the Gauss points alone (p,)
 
 
 class ResponseTable(NamedTuple):
@@ -51,7 +52,8 @@ def element_points(count: int) -> ElementPoints:
     position = np.concatenate([[0.0], 0.5 * (nodes + 1.0)])
     difference = 4.0 * (position[:, None] - position[None, :])
     np.fill_diagonal(difference, 1.0)
-    return ElementPoints(position, 0.5 * weights, 1.0 / np.prod(difference, axis=1))
+    barycentric = 1.0 / np.prod(difference, axis=1)
+    return ElementPoints(position, 0.5 * weights, barycentric, barycentric[1:] * position[1:])
 
 
 def _through_gauss_points(nodes: Array, at: Array) -> NDArray:

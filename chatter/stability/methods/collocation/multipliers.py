@@ -22,7 +22,7 @@ from chatter.stability.methods.collocation.coupling_assembly import coupling_ass
 from chatter.stability.methods.collocation.element_assembly import OperatorArrays, operator_arrays
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
 from chatter.stability.methods.collocation.first_use import compile_side_by_side
-from chatter.stability.methods.collocation.varying_speed import rotations, tool_periods, varies
+from chatter.stability.methods.collocation.varying_speed import periods, tool_periods, varies
 from chatter.stability.simd_batch import BATCH_SIZE
 from chatter.stability.stability_method import Multiplier
 
@@ -124,11 +124,9 @@ def _solved_together(
 def _neighbours_together(cut: ElementCut, speeds: Array, depths: Array) -> IntegerArray:
     """Order of the points in which those follow each other that can share work."""
     if varies(cut):
-        # those of like periods go side by side
-        periods = np.array(
-            [(rotation.patterns, rotation.cycles) for rotation in rotations(cut, speeds)]
-        )
-        return np.lexsort((speeds, depths, periods[:, 1], periods[:, 0]))
+        # those of like periods go side by side; at one speed much is shared
+        patterns, cycles = periods(cut, speeds)
+        return np.lexsort((depths, speeds, cycles, patterns))
     # at one depth much is shared, at neighbouring speeds most of it
     _, row, count = np.unique(depths, return_inverse=True, return_counts=True)
     return np.lexsort((speeds, np.where(count[row] > 1, depths, 0.0)))

@@ -8,9 +8,9 @@ of the true ratio, with an error of second order in what the frequency has been 
 
 import numpy as np
 
-from chatter.description.arrays import Array
+from chatter.description.arrays import Array, IntegerArray
 from chatter.stability.methods.collocation.element_cut import ElementCut
-from chatter.stability.spindle_rotation import PeriodFit, SpindleRotation, spindle_rotation_at
+from chatter.stability.spindle_rotation import PeriodFit, fitted_periods
 
 #: by this share the frequency may be moved where speed matters more than accuracy
 LOOSE_FIT = PeriodFit(tuning=2e-2)
@@ -32,28 +32,23 @@ def beside(cut: ElementCut, least_periods: int) -> Pair:
     return cut.with_fit(fit._replace(beyond=0)), cut.with_fit(fit._replace(beyond=1))
 
 
-def rotations(cut: ElementCut, speeds: Array) -> list[SpindleRotation]:
-    """Rotation of the spindle at every speed (rad/s)."""
+def periods(cut: ElementCut, speeds: Array) -> tuple[IntegerArray, IntegerArray]:
+    """Tool periods and variations in a period at every speed (rad/s), both (n,)."""
     arrays = cut.arrays
-    return [
-        spindle_rotation_at(arrays.variation, arrays.fit, float(speed), arrays.period_angle)
-        for speed in speeds
-    ]
+    return fitted_periods(arrays.variation, arrays.fit, speeds, arrays.period_angle)
 
 
 def tool_periods(cut: ElementCut, speeds: Array) -> Array:
     """Tool periods in a period (n,) at n speeds (rad/s)."""
     if not varies(cut):
         return np.ones(len(speeds))
-    return np.array([float(rotation.patterns) for rotation in rotations(cut, speeds)])
+    return periods(cut, speeds)[0].astype(np.float64)
 
 
 def share_between(pair: Pair, speeds: Array) -> Array:
     """Where the true ratio (n,) lies: 0 is what the first of the two takes, 1 the second."""
-    fewer, more = (
-        np.array([rotation.patterns / rotation.cycles for rotation in rotations(cut, speeds)])
-        for cut in pair
-    )
+    (of_fewer, by_fewer), (of_more, by_more) = (periods(cut, speeds) for cut in pair)
+    fewer, more = of_fewer / by_fewer, of_more / by_more
     arrays = pair[0].arrays
     true = speeds / (arrays.variation.frequency * arrays.period_angle)
     return np.where(more > fewer, (true - fewer) / np.where(more > fewer, more - fewer, 1.0), 0.0)
