@@ -200,7 +200,7 @@ def _add_source(sources, first, count, element, near, share, coupling):
 
 @njit(**LEAF_KERNEL)
 def couple_edges(cut, edge, layout, rotation, state, row, first_source, sources, couplings):
-    """Enter what the edges couple at a `SpindleState`, to earlier motion only as far as delays vary.
+    """Enter what the edges couple at a `SpindleState`, to earlier motion as far as delays vary.
 
     What they couple over the distinct delays is left in `couplings.of_delay`. Returns the number of
     sources.
