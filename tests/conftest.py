@@ -19,7 +19,7 @@ settings.load_profile("gate")
 def pytest_configure(config):
     """Workers share what they compile."""
     if hasattr(config, "workerinput"):
-        from tests.compiled_once import compile_once
+        from tests.shared_compilation import compile_once
 
         compile_once()
 

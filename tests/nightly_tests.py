@@ -5,8 +5,9 @@
 
 rewrites tests/nightly.txt, which tests/conftest.py reads. Take the second run of an environment:
 in the first the tests that come first compile for all. Of a test with several cases the quickest
-stays in `make test`, of every module one test at the least, and a test of the physics that has no
-cases always, since it may be the only one that fails for a wrong sign, factor or unit.
+stays in `make test`, of every module one test at the least. A test of the physics that has no cases
+is left out only if it takes long, since it may be the only one that fails for a wrong sign, factor
+or unit.
 """
 
 import argparse
@@ -19,15 +20,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 LIST = ROOT / "tests" / "nightly.txt"
-#: seconds from which on a case of a test is slow, and a test that has but one
-SLOW_CASE, SLOW_TEST = 0.5, 1.0
+#: seconds from which on a case of a test is slow, and a test that has but one, of physics or not
+SLOW_CASE, SLOW_TEST, SLOW_PHYSICS = 0.3, 0.5, 3.0
 #: published numbers and the rules of the tree stay in every run
 _ALWAYS = (
     "tests/validation/test_published.py",
     "tests/validation/test_hajdu_2020.py",
     "tests/test_architecture.py",
 )
-#: trees of the physics, and of published machines: no test without cases is left out here
+#: trees of the physics, and of published machines
 _PHYSICS = (
     "tests/cutting/",
     "tests/dynamics/",
@@ -76,7 +77,8 @@ def chosen(every: Iterable[str], seconds: Mapping[str, float]) -> list[str]:
     for own in cases.values():
         first, *others = sorted(own, key=took)
         left |= {one for one in others if took(one) > SLOW_CASE}
-        if not others and took(first) > SLOW_TEST and not first.startswith(_PHYSICS):
+        most = SLOW_PHYSICS if first.startswith(_PHYSICS) else SLOW_TEST
+        if not others and took(first) > most:
             left.add(first)
     for own in modules.values():
         if left.issuperset(own):

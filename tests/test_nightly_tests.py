@@ -2,7 +2,15 @@
 
 import pytest
 
-from tests.nightly_tests import ROOT, SLOW_CASE, SLOW_TEST, chosen, durations, nightly_tests
+from tests.nightly_tests import (
+    ROOT,
+    SLOW_CASE,
+    SLOW_PHYSICS,
+    SLOW_TEST,
+    chosen,
+    durations,
+    nightly_tests,
+)
 
 
 def test_durations_are_read_as_pytest_prints_them():
@@ -19,8 +27,9 @@ def test_durations_are_read_as_pytest_prints_them():
     }
 
 
-def test_the_quickest_case_stays_one_test_of_a_module_and_those_of_the_physics_without_cases():
+def test_the_quickest_case_stays_one_test_of_a_module_and_longer_ones_of_the_physics():
     slow = 2.0 * SLOW_TEST
+    assert slow < SLOW_PHYSICS
     seconds = {
         "tests/a.py::test_cases[1]": slow,
         "tests/a.py::test_cases[2]": 2.0 * slow,
@@ -29,7 +38,8 @@ def test_the_quickest_case_stays_one_test_of_a_module_and_those_of_the_physics_w
         "tests/b.py::test_alone": slow,
         "tests/b.py::test_slower": 2.0 * slow,
         "tests/c.py::test_quick": 0.9 * SLOW_TEST,
-        "tests/cutting/test_d.py::test_alone": 3.0 * slow,
+        "tests/cutting/test_d.py::test_alone": 0.9 * SLOW_PHYSICS,
+        "tests/cutting/test_d.py::test_long": 1.1 * SLOW_PHYSICS,
         "tests/cutting/test_d.py::test_cases[1]": slow,
         "tests/cutting/test_d.py::test_cases[2]": 0.5 * slow,
     }
@@ -39,6 +49,7 @@ def test_the_quickest_case_stays_one_test_of_a_module_and_those_of_the_physics_w
         "tests/a.py::test_cases[2]",
         "tests/b.py::test_slower",
         "tests/cutting/test_d.py::test_cases[1]",
+        "tests/cutting/test_d.py::test_long",
     ]
 
 

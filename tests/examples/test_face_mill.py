@@ -44,6 +44,7 @@ def test_chatter_sets_in_when_the_paper_says(example, entering):
     assert frequency == pytest.approx(50.0, rel=0.05)
 
 
+@pytest.mark.nightly
 def test_every_run_has_what_it_needs(example, case):
     """The fourth run ploughs, which asks for a clearance angle that the others do not need."""
     begun = case.patch({"simulation.duration": "0.02 s"})
