@@ -3,7 +3,8 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-# commands that tests start anew read compiled modules
+# what is installed is compiled as it is first imported, which is a fraction of it; commands that tests
+# start anew read compiled modules
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test nightly campaigns lowest manual distributions benchmarks clean
@@ -63,11 +64,11 @@ $(VENV)/.python:
 	@touch $@
 
 $(VENV)/.installed: $(VENV)/.python pyproject.toml
-	$(BIN)/python -m pip install --quiet --editable .
+	$(BIN)/python -m pip install --quiet --no-compile --editable .
 	@touch $@
 
 $(VENV)/.installed-dev: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --editable '.[dev,formats,manual]'
+	$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev,formats,manual]'
 	@touch $@
 
 clean:

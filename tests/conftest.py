@@ -1,5 +1,6 @@
 """Settings for all tests."""
 
+import gc
 import os
 
 import pytest
@@ -9,6 +10,9 @@ from tests.nightly_tests import nightly_tests
 
 # matrices in the tests are small: threads of BLAS cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# what compilers and modules leave stays: to look through it again and again takes a tenth of a run
+gc.set_threshold(50_000, 20, 100)
 
 # a gate repeats itself: it draws the same cases every time, the nightly run draws new ones; on a
 # machine that is busy a case may take any time
