@@ -85,6 +85,12 @@ TOOLS = {
     "varying speed": model_of(
         {}, {"speed_variation": {"amplitude": 0.1, "frequency": 40.0}}, TWO_MODES
     ),
+    # delays of three pitches, dashpots as one over the speed, elements cut in two at corners
+    "varying speed, pitch, helix, process damping": model_of(
+        {"teeth": 3, "pitch": [math.radians(a) for a in (110, 120, 130)], "helix": 0.5},
+        {"speed_variation": {"amplitude": 0.3, "frequency": 90.0, "shape": "triangle"}}, TWO_MODES,
+        process_damping={"coefficient": 2e4, "friction": 0.3},
+    ),
 }  # fmt: skip
 
 

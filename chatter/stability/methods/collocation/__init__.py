@@ -17,6 +17,6 @@ chatter_frequency   chatter frequencies of a batch
 drivers             compiled loops that Python calls; first_use compiles them side by side
 multipliers         multipliers and limits of a cut at one resolution
 converged_limits    finer elements until limits are good to a tolerance; finer_limits
-varying_limits      the same under a varying speed; varying_speed
+varying_limits      the same under a varying speed; varying_speed, secant_limits
 ==================  ============================================================================
 """

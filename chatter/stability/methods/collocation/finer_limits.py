@@ -42,7 +42,9 @@ def checked_limits(cut: ElementCut, speeds: Array, limits: Array, most: int) -> 
         picked = picked[np.unique(ranks)]
     speed, depth = speeds[picked], limits[picked]
     step = 1e-3 * depth
-    below, above = (growth_rate_at(cut, speed, depth + s) for s in (-step, step))
+    # at once, so that they share what they can
+    both = growth_rate_at(cut, np.tile(speed, 2), np.concatenate([depth - step, depth + step]))
+    below, above = np.split(both, 2)
     return CheckedLimits(speed, depth, np.maximum(np.abs(above - below) / (2.0 * step), 1e-300))
 
 
