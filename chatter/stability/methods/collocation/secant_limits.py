@@ -23,7 +23,7 @@ _SHORT_STEP = 1e-4
 _MOST_STEPS = 4
 
 
-class RecordedGrowth:
+class RecordedGrowthRate:
     """A growth rate that records where it was evaluated."""
 
     def __init__(self, growth_rate: GrowthRate) -> None:

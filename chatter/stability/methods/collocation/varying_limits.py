@@ -26,9 +26,11 @@ from chatter.stability.methods.collocation.multipliers import (
     growth_rate_of,
     points_of_periods,
 )
-from chatter.stability.methods.collocation.secant_limits import RecordedGrowth, limits_by_secants
+from chatter.stability.methods.collocation.secant_limits import (
+    RecordedGrowthRate,
+    limits_by_secants,
+)
 from chatter.stability.methods.collocation.varying_speed import (
-    LOOSE_FIT,
     Pair,
     beside,
     interpolated,
@@ -70,7 +72,7 @@ def limits_of_varying_speed(
 def _limits(
     cut_at: CutAt, speeds: Array, depths: Array, progress: Progress, tolerance: float
 ) -> LimitCurve:
-    first = RecordedGrowth(growth_rate_of(cut_at(*_FIRST).with_fit(_FIRST_FIT), speeds))
+    first = RecordedGrowthRate(growth_rate_of(cut_at(*_FIRST).with_fit(_FIRST_FIT), speeds))
     crossings = continued_crossings(len(speeds), depths, first, _FIRST_TOLERANCE, _STRIDE, progress)
     slopes = [first.slopes(np.full(found.size, i), found) for i, found in enumerate(crossings)]
     resolutions = list(_RESOLUTIONS[0 if tolerance >= LIMIT_ERROR else _FIRST_OF_CLOSE :])
@@ -100,9 +102,7 @@ def _limits(
         else:
             break
     steps = points_of_periods(pair[0], speeds, depths)
-    # its frequency is all but the same in a shorter period that nearly fits, and costs far less
-    at_limits = evaluated_points(cut.with_fit(LOOSE_FIT), speeds).at_limits
-    curve = limits_at(at_limits, speeds, crossings, steps)
+    curve = limits_at(evaluated_points(pair[0], speeds).at_limits, speeds, crossings, steps)
     return curve._replace(error=of_elements + of_periods)
 
 

@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
-from chatter.stability.methods.collocation.secant_limits import RecordedGrowth, limits_by_secants
+from chatter.stability.methods.collocation.secant_limits import (
+    RecordedGrowthRate,
+    limits_by_secants,
+)
 
 #: where growth begins, ends and begins again at three speeds, m
 LIMITS = np.array([[1.0e-3, 2.0e-3, 2.5e-3], [1.1e-3, 2.1e-3, 2.7e-3], [0.8e-3, 1.7e-3, 2.2e-3]])
@@ -16,7 +19,7 @@ def growth_rate(points, depth, moved=1.0):
 
 
 def recorded():
-    growth = RecordedGrowth(growth_rate)
+    growth = RecordedGrowthRate(growth_rate)
     grid = np.linspace(0.0, 3e-3, 61)[1:]
     for point in (2, 0, 1):
         growth(np.full(grid.size, point), grid)
@@ -31,7 +34,7 @@ def test_slopes_are_those_of_the_growth_rate():
 
 def test_a_side_without_a_point_gives_no_slope():
     assert np.isnan(recorded().slopes(np.array([0, 1]), np.array([1e-5, 4e-3]))).all()
-    assert np.isnan(RecordedGrowth(growth_rate).slopes(np.array([0]), np.array([1e-3]))).all()
+    assert np.isnan(RecordedGrowthRate(growth_rate).slopes(np.array([0]), np.array([1e-3]))).all()
 
 
 @pytest.mark.parametrize("moved", [0.97, 1.0, 1.02])
