@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 _LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
+#: tangential coefficients of foam and of hardened steel at thin chips, with room to spare, Pa
+_SOFTEST, _HARDEST = 5e6, 3e10
 #: share of variance of a channel over the cuts that a straight line leaves, worth telling
 _LINEAR_SHARE = 0.95
 
@@ -274,6 +276,7 @@ class Coefficients(NotebookResult):
                 "unknown senses of channels are those that make the coefficients positive and the "
                 "radial one smaller than the tangential one"
             )
+        notes += self._of_no_material()
         if self.by_waveforms:
             return [*notes, *self._notes_of_waveforms()]
         if self.linear_law_holds is False:
@@ -299,6 +302,17 @@ class Coefficients(NotebookResult):
                 "them, and the deviations are too small"
             )
         return notes
+
+    def _of_no_material(self) -> list[str]:
+        """That the tangential coefficient is one that nothing milled has, as by a wrong unit."""
+        tangential = float(self.material.get("Ktc", 0.0))  # type: ignore[arg-type]
+        if tangential <= 0.0 or _SOFTEST <= tangential <= _HARDEST:
+            return []
+        return [
+            f"Ktc is {1e-6 * tangential:.3g} MPa, where what is milled has {1e-6 * _SOFTEST:g} to "
+            f"{1e-6 * _HARDEST:g} MPa: check the unit of the forces in the heading, the feed and "
+            "the axial depth"
+        ]
 
     def _notes_of_waveforms(self) -> list[str]:
         if self.linear_law_holds:

@@ -217,3 +217,12 @@ def test_a_record_of_one_sample_is_refused(tmp_path, case):
     file = write(tmp_path / "cut.csv", forces_of([0.03])[:1])
     with pytest.raises(InputError, match=r"cut\.csv: 1 sample is no record of a cut"):
         chatter.coefficients(file, case)
+
+
+@pytest.mark.parametrize(("unit", "is_told"), [("N", False), ("kN", True)])
+def test_forces_in_another_unit_than_the_heading_says_are_told(tmp_path, case, unit, is_told):
+    feeds = np.repeat([0.04, 0.1], RATE // 2)
+    file = write(tmp_path / "a.csv", forces_of(feeds), **{"feed_per_tooth [mm]": feeds})
+    file.write_text(file.read_text().replace("[N]", f"[{unit}]"))
+    notes = chatter.coefficients(file, case).notes
+    assert any("check the unit of the forces in the heading" in one for one in notes) == is_told
