@@ -109,7 +109,8 @@ def coupling_assemblies(cut, speeds, depths):
     neighbours of equal speed and equal elements share all positions.
     """
     arrays = cut.arrays
-    assemblies, count = empty_assemblies(speeds.shape[0]), 0
+    # as a literal it would be compiled for apart
+    assemblies, count = empty_assemblies(speeds.shape[0]), np.int64(0)
     constant = arrays.variation.amplitude == 0.0
     rotation, period = STEADY_ROTATION, arrays.period_angle
     counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()

@@ -67,7 +67,8 @@ def _with_room(array, used, needed, like_it):
     if used + needed <= array.shape[0]:
         return array
     larger = np.empty(max(used + needed * like_it, 2 * used), dtype=array.dtype)
-    larger[:used] = array[:used]
+    for i in range(used):
+        larger[i] = array[i]
     return larger
 
 

@@ -263,7 +263,7 @@ def couple_edges(cut, edge, layout, rotation, state, row, first_source, sources,
     return count
 
 
-@njit(**INLINED_LEAF_KERNEL)
+@njit(**LEAF_KERNEL)
 def _find_earlier(cut, layout, rotation, positions, row, delay):
     """Find the element and the position in it of the earlier motion at a row over a delay."""
     angle = positions.angle[row] - cut.arrays.segments.distinct_delay[delay]
@@ -279,7 +279,7 @@ def _find_earlier(cut, layout, rotation, positions, row, delay):
     positions.earlier_element[row, delay] = element
 
 
-@njit(**INLINED_LEAF_KERNEL)
+@njit(**LEAF_KERNEL)
 def couple_delays(cut, layout, rotation, positions, row, first, count, sources, of_delay):
     """Enter what is coupled over the distinct delays at a row; returns the number of sources."""
     rank = of_delay.shape[1]

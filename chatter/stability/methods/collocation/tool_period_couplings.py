@@ -46,9 +46,12 @@ def tool_period_couplings(cut, edge, layout, rotation, sources):
         span, i = row // count, row % count
         angle = layout.span_start[span] + points.position[i + 1] * layout.span_length[span]
         state = SpindleState(angle, 1.0, elements)
-        couple_edges(cut, edge, layout, rotation, state, row, 0, sources, couplings)
-        of_delay[row] = couplings.of_delay[:delays]
-    couplings.stiffness[:] -= held * couplings.dashpot
+        couple_edges(cut, edge, layout, rotation, state, row, np.int64(0), sources, couplings)
+        for i in range(rank):
+            for j in range(rank):
+                couplings.stiffness[row, i, j] -= held * couplings.dashpot[row, i, j]
+                for delay in range(delays):
+                    of_delay[row, delay, i, j] = couplings.of_delay[delay, i, j]
     return ToolPeriodCouplings(couplings.stiffness, couplings.dashpot, of_delay)
 
 
