@@ -12,7 +12,7 @@ from tests.nightly_tests import nightly_tests
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # what compilers and modules leave stays: to look through it again and again takes a tenth of a run
-gc.set_threshold(50_000, 20, 100)
+gc.set_threshold(50_000, 10, 10)
 
 # a gate repeats itself: it draws the same cases every time, the nightly run draws new ones; on a
 # machine that is busy a case may take any time
