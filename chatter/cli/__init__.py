@@ -11,6 +11,7 @@ imported_commands commands are imported when they are called, and help imports n
 quick_pictures    the library of pictures without its own documentation
 start_up          a word while the program is loaded
 garbage           the garbage collector while a command starts and ends
+lost_interruption Ctrl-C that libraries swallow
 progress          progress bars; what the first use takes
 results           what every command does with its result
 report            `--report` of every command
@@ -40,6 +41,7 @@ import typer
 
 from chatter.cli.garbage import end_without_collection, start_without_collection
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
+from chatter.cli.lost_interruption import repeat_lost_interruptions
 from chatter.cli.quick_pictures import leave_documentation_out
 from chatter.cli.start_up import START_UP
 
@@ -133,6 +135,7 @@ def main() -> None:
     if not _completes_for_a_shell():
         START_UP.begin()
     start_without_collection()
+    repeat_lost_interruptions()
     try:
         program()
     except SystemExit as ended:
