@@ -108,7 +108,7 @@ _LARGE, _LINE, _SPACING = 0.1, 0.2, 1.5e-4
 #: pulses that tell what is usual near one, relative difference of a period that misses one, and of
 #: neighbours of a spindle that turns; share of the periods that are as they should be
 _NEARBY, _MISSING, _STEADY, _MOST = 9, 0.25, 0.05, 0.6
-#: difference of a number of pulses a revolution from a whole one, and most that are told apart
+#: difference of a number of pulses a revolution from a whole one, and most that are distinguished
 _WHOLE, _MOST_PULSES = 0.25, 8
 #: lowest and highest frequency of a spindle, Hz
 _SLOWEST, _FASTEST = 3.0, 700.0
