@@ -11,7 +11,6 @@ imported_commands commands are imported when they are called, and help imports n
 quick_pictures    the library of pictures without its own documentation
 start_up          a word while the program is loaded
 garbage           the garbage collector while a command starts and ends
-lost_interruption Ctrl-C that libraries swallow
 progress          progress bars; what the first use takes
 results           what every command does with its result
 report            `--report` of every command
@@ -41,9 +40,9 @@ import typer
 
 from chatter.cli.garbage import end_without_collection, start_without_collection
 from chatter.cli.imported_commands import CommandGroup, ImportedCommands
-from chatter.cli.lost_interruption import repeat_lost_interruptions
 from chatter.cli.quick_pictures import leave_documentation_out
 from chatter.cli.start_up import START_UP
+from chatter.engine.interruption import repeat_swallowed_interruptions
 
 if _IS_OURS:
     signal.signal(signal.SIGINT, _HANDLER)
@@ -135,7 +134,7 @@ def main() -> None:
     if not _completes_for_a_shell():
         START_UP.begin()
     start_without_collection()
-    repeat_lost_interruptions()
+    repeat_swallowed_interruptions()
     try:
         program()
     except SystemExit as ended:

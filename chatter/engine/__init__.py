@@ -12,6 +12,7 @@ loop_stability stability of the control loops of a machine, by the same loop
 presets        decorator presets, folder of the compiled code
 compiled_once  inner functions compiled as parts of their drivers alone
 loaded_kernels compiled code taken from the disk without the compiler
+interruption   Ctrl-C while compiled code, or what calls Python from C, runs
 parallel       sweeps over points in threads, executor interface
 ============== ======================================================================
 """

@@ -50,6 +50,53 @@ def test_ctrl_c_in_compiled_code_is_a_keyboard_interrupt():
     assert (ended.returncode, ended.stdout.strip()) == (0, "10 True"), ended.stderr
 
 
+#: with a WAIT longer than the delay, Ctrl-C comes again while the first is still being told
+SWALLOWED = """
+import ctypes, signal, sys, time
+from chatter.engine import interruption
+
+told = []
+sys.unraisablehook = lambda lost: told.append(lost.exc_type.__name__)
+interruption.repeat_swallowed_interruptions()
+sent = interruption._send_later
+waits = []
+
+
+def late(number):
+    sent(number)
+    end = time.monotonic() + (waits.pop() if waits else 0.0)
+    while time.monotonic() < end:
+        pass
+
+
+interruption._send_later = late
+called = ctypes.CFUNCTYPE(None)
+
+
+def fails():
+    raise ValueError
+
+
+called(fails)()
+for _ in range(10):
+    waits.append(WAIT)
+    try:
+        called(lambda: signal.raise_signal(signal.SIGINT))()
+        time.sleep(60.0)
+    except KeyboardInterrupt:
+        told.append("interrupted")
+print(told)
+"""
+
+
+@pytest.mark.parametrize("wait", [0.0, 0.02])
+def test_what_was_swallowed_comes_again_and_other_errors_are_told_as_before(wait):
+    line = [sys.executable, "-c", SWALLOWED.replace("WAIT", repr(wait))]
+    ended = subprocess.run(line, capture_output=True, text=True, timeout=50.0, check=False)
+    told = ["ValueError", *["interrupted"] * 10]
+    assert (ended.returncode, ended.stdout.strip()) == (0, repr(told)), ended.stderr
+
+
 @pytest.fixture
 def handler(monkeypatch):
     before = signal.getsignal(signal.SIGINT)
