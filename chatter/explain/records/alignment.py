@@ -9,7 +9,7 @@ frequency is folded back by the sampling, and is predicted as such.
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +27,9 @@ USUAL_ORDER, ORDERS = 4, (2, 4, 6, 8)
 #: angles of the scan, steps of the search, and change of the prediction, over the record, below
 #: which it ends
 _SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-7
+#: the same with which a step is the last where it is less than a share of the one before: Newton's
+#: steps that close converge quadratically
+_NEAR, _QUADRATIC = 1e-5, 0.1
 #: highest order that is predicted, over the highest in the band: a usual filter leaves a hundredth
 #: of what is beyond
 _FOLDED = 3.0
@@ -54,6 +57,7 @@ class Recorded:
     pitch: float  # smallest angle by which a tool may be turned unseen, rad
     angle: Array | None = None  # (n,) of the spindle, rad, where it is known
     expected: float | None = None  # angle in the middle of the record, where a tacho tells it
+    filter_ratio: float = USUAL_FILTER  # sampling over corner frequency of its filter, if about it
 
     @property
     def sampling(self) -> float:
@@ -72,13 +76,22 @@ class Recorded:
 
     @cached_property
     def _spectrum_of_means(self) -> Complex:
-        """Conjugate spectrum of the mean products of two harmonics, which depend on their distance.
+        """Spectrum of the mean products of two harmonics, which depend on their distance.
 
-        As many points as keep the ends of a correlation over all harmonics apart.
+        From those above the band to those of the band, mirrored and direct, as one correlation of
+        as few points as keep its ends apart.
         """
-        count = self.orders.size + self.in_band + 1
-        points = scipy.fft.next_fast_len(count + 2 * self.in_band + 1)
-        return np.conj(scipy.fft.fft(np.conj(self._means(count)), points))
+        band, above = self.in_band, self.orders.size - self.in_band
+        means = self._means(self.orders.size + band + 1)
+        lags = np.arange(1 - above, 2 * band + 1)
+        kernel = np.zeros(scipy.fft.next_fast_len(lags.size), dtype=np.complex128)
+        kernel[lags] = means[2 * band + 1 - lags]
+        return scipy.fft.fft(kernel)
+
+    @cached_property
+    def _spectrum_of_means_turned(self) -> Complex:
+        """The same of the correlation turned round."""
+        return np.roll(self._spectrum_of_means[::-1], 1)
 
     def _means(self, count: int) -> Complex:
         """Means (count,) of the harmonics of order 0 on over the usable samples."""
@@ -93,17 +106,27 @@ class Recorded:
         return found
 
     def folded(self, harmonics: Complex) -> Complex:
-        """Harmonics (c, K) that a record shows of a signal of harmonics (c, M).
+        """Harmonics (..., K) that a record shows of signals of harmonics (..., M).
 
         Those above the band and their conjugates have shares in it by the mean products over the
         usable samples, a correlation.
         """
         band, means = self.in_band, self._spectrum_of_means
-        above = np.zeros((len(harmonics), means.size), dtype=np.complex128)
-        above[:, band + 1 : self.orders.size + 1] = harmonics[:, band:]
-        shares = scipy.fft.ifft(scipy.fft.fft(above) * means)
-        direct, mirrored = shares[:, 1 : band + 1], shares[:, : -band - 1 : -1]
-        return harmonics[:, :band] + direct + np.conj(mirrored)
+        shares = scipy.fft.ifft(scipy.fft.fft(harmonics[..., band:], means.size) * means)
+        direct, mirrored = shares[..., band + 1 : 2 * band + 1], shares[..., :band][..., ::-1]
+        return harmonics[..., :band] + direct + np.conj(mirrored)
+
+    def unfolded(self, weights: Complex) -> Complex:
+        """Weights (c, M) of harmonics by which they sum up as some (c, K) of them folded.
+
+        In the real part of the sum of products: the adjoint of `folded`.
+        """
+        band, means = self.in_band, self._spectrum_of_means
+        rows = np.zeros((len(weights), 2 * band + 1), dtype=np.complex128)
+        rows[:, band + 1 :] = weights
+        rows[:, :band] = np.conj(weights[:, ::-1])
+        shares = scipy.fft.ifft(scipy.fft.fft(rows, means.size) * self._spectrum_of_means_turned)
+        return np.hstack([weights, shares[:, : self.orders.size - band]])
 
     @cached_property
     def scan(self) -> tuple[Array, Complex]:
@@ -142,11 +165,17 @@ class Recorded:
         """Norm of the harmonics of the channels."""
         return float(np.linalg.norm(self.content))
 
-    def drift(self, values: Array) -> Array:
-        """Offset and drift (c, n) of values (c, n), from the usable samples."""
+    @cached_property
+    def _lines(self) -> tuple[Array, Array]:
+        """Offset and drift (2, n) of size one, and weights (n, 2) by which values tell both."""
         basis = np.stack([np.ones(self.time.size), self.middle / self.middle[-1]])
         weighted = basis * self.usable
-        return np.linalg.solve(weighted @ basis.T, weighted @ values.T).T @ basis
+        return basis, np.linalg.solve(weighted @ basis.T, weighted).T
+
+    def drift(self, values: Array) -> Array:
+        """Offset and drift (c, n) of values (c, n), from the usable samples."""
+        basis, weights = self._lines
+        return values @ weights @ basis
 
     def at(self, harmonics: Complex, start: float) -> Array:
         """Channels (c, n) of harmonics (c, M) where the angle begins at a start angle."""
@@ -154,9 +183,12 @@ class Recorded:
         padded = np.zeros((len(harmonics), points // 2 + 1), dtype=np.complex128)
         padded[:, 1 : self.orders.size + 1] = 0.5 * points * harmonics
         rows = np.fft.irfft(padded, points, axis=1)
-        grid = np.arange(points + 1) * 2.0 * math.pi / points
-        angle = np.mod(self.turned + start, 2.0 * math.pi)
-        return np.array([np.interp(angle, grid, np.append(row, row[0])) for row in rows])
+        place = (self.turned + start) * (points / (2.0 * math.pi))
+        before = np.floor(place)
+        share = place - before
+        index = before.astype(np.int64) & (points - 1)
+        here, after = rows[:, index], rows[:, (index + 1) & (points - 1)]
+        return here + share * (after - here)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +202,7 @@ class Alignment:
     misfit: float  # sum of squares of the harmonics that differ, over the deviations
 
 
+@lru_cache
 def _damped(order: int) -> Array:
     """Twice the damping ratios (order / 2,) of the poles of a Butterworth filter of even order."""
     return 2.0 * np.sin((2.0 * np.arange(order // 2) + 1.0) * math.pi / (2.0 * order))
@@ -189,16 +222,11 @@ def low_pass(
     """Butterworth filter at frequencies, Hz, by the sampling over the corner frequency."""
     rate = 1j * frequency / sampling
     s = rate * corner_ratio
-    squared = s * s + 1.0
-    product = np.ones(s.shape, dtype=np.complex128)
-    slope, bend = np.zeros((2, *s.shape), dtype=np.complex128)
-    for damped in _damped(order):
-        pole_pair = squared + damped * s
-        one = (2.0 * s + damped) / pole_pair
-        product *= pole_pair
-        slope += one
-        bend += 2.0 / pole_pair - one * one
-    return LowPass(1.0 / product, -rate * slope, -rate * rate * bend)
+    damped = _damped(order)[:, None]
+    inverse = 1.0 / (s * s + 1.0 + damped * s)  # of the pairs of poles
+    slopes = (2.0 * s + damped) * inverse
+    bend = np.sum(2.0 * inverse - slopes * slopes, axis=0)
+    return LowPass(np.prod(inverse, axis=0), -rate * slopes.sum(axis=0), -rate * rate * bend)
 
 
 def aligned(harmonics: Complex, recorded: Recorded, filter_order: int = USUAL_ORDER) -> Alignment:
@@ -215,15 +243,28 @@ def aligned(harmonics: Complex, recorded: Recorded, filter_order: int = USUAL_OR
     return Alignment(predicted, angle, found.start, corner, found.cost)
 
 
+class _Symmetric(NamedTuple):
+    """Matrix (2, 2) of the angle and the ratio: plain numbers, as arrays so small cost more."""
+
+    angle: float
+    both: float
+    ratio: float
+
+    @property
+    def determinant(self) -> float:
+        """Determinant."""
+        return self.angle * self.ratio - self.both * self.both
+
+
 class _Laid(NamedTuple):
-    """Harmonics laid beside a record, and what Gauss-Newton steps from there hang on."""
+    """Harmonics laid beside a record, and what Newton's steps from there hang on."""
 
     start: float  # angle, rad
     ratio: float  # sampling over corner frequency
     cost: float  # sum of squares of what differs
-    normal: Array  # (2, 2), of the angle and the ratio
-    gradient: Array  # (2,), with its sign turned
-    curved: Array  # (2, 2), the same with what curves the harmonics
+    normal: _Symmetric
+    gradient: tuple[float, float]  # by angle and ratio, with its sign turned
+    curved: _Symmetric  # the normal matrix with what curves the harmonics
 
 
 class _Search:
@@ -237,69 +278,94 @@ class _Search:
     def __init__(self, scaled: Complex, recorded: Recorded, filter_order: int) -> None:
         self._scaled, self._recorded, self._order = scaled, recorded, filter_order
         self._turned = 1j * recorded.orders
+        self._turned_twice = self._turned**2
+        self._factors = np.ones((3, self._turned.size), dtype=np.complex128)
+        self._factors[1] = self._turned
         self._delay = 0.0
         if recorded.angle is None:
             damped = float(_damped(filter_order).sum())
             self._delay = damped * recorded.speed / (2.0 * math.pi * recorded.sampling)
-        self._widest = np.array([_WIDEST_TURN * recorded.pitch, _WIDEST_FILTER])
+        self._widest = (_WIDEST_TURN * recorded.pitch, _WIDEST_FILTER)
 
     def filter_at(self, ratio: float) -> LowPass:
         """Anti-alias filter (M,) at the harmonics."""
         return low_pass(self._recorded.frequency, ratio, self._recorded.sampling, self._order)
 
     def found(self) -> _Laid:
-        """Return the best that steps from the best angle of the scan and the usual filter reach."""
-        best, width = self._at(self._scanned(), USUAL_FILTER), 1.0
+        """Return the best that steps from the best angle of the scan and a likely filter reach."""
+        best, width, last = self._begun(), 1.0, math.inf
         for _ in range(_MOST_STEPS):
-            step = self._step(best, width * self._widest)
-            if math.sqrt(step @ best.normal @ step) <= _CONVERGED * self._recorded.size:
+            turn, ratio = self._step(best, width)
+            normal = best.normal
+            moved = normal.angle * turn**2 + 2.0 * normal.both * turn * ratio
+            change = math.sqrt(max(moved + normal.ratio * ratio**2, 0.0)) / self._recorded.size
+            if change <= _CONVERGED:
                 break
-            turned = step[0] + self._delay * step[1]
-            trial = self._at(best.start + turned, best.ratio + step[1])
+            there = best.start + turn + self._delay * ratio, best.ratio + ratio
+            if change <= min(_NEAR, _QUADRATIC * last):
+                # what the next step would change is of the order of the square
+                return best._replace(start=there[0], ratio=there[1])
+            trial = self._at(*there)
             if trial.cost > best.cost:
-                width = _NARROWER * float(np.max(np.abs(step) / self._widest))
+                size = max(abs(turn) / self._widest[0], abs(ratio) / self._widest[1])
+                width, last = _NARROWER * size, math.inf
             else:
-                best, width = trial, min(_WIDER * width, 1.0)
+                best, width, last = trial, min(_WIDER * width, 1.0), change
         return best
+
+    def _begun(self) -> _Laid:
+        """Best angle of the scan, behind the usual filter or that of the record if this fits."""
+        usual = self._at(self._scanned(), USUAL_FILTER)
+        apart = self._recorded.filter_ratio - USUAL_FILTER
+        if abs(apart) < 0.5 * _WIDEST_FILTER:
+            return usual
+        own = self._at(usual.start + self._delay * apart, self._recorded.filter_ratio)
+        return min(usual, own, key=lambda laid: laid.cost)
 
     def _at(self, start: float, ratio: float) -> _Laid:
         recorded, low = self._recorded, self.filter_at(ratio)
         now = self._scaled * (low.gain * np.exp(self._turned * start))
         of_ratio = low.slope + self._delay * self._turned
-        rows = np.concatenate([now, now * self._turned, now * of_ratio])
-        shown, *slopes = np.split(recorded.folded(rows), 3)
-        matrix = np.array([one.ravel() for one in slopes])
-        matrix[0] *= recorded.angle is None
-        residual = recorded.content - shown
-        normal = np.real(np.conj(matrix) @ matrix.T)
-        normal += _DAMPING * (np.trace(normal) + 1e-300) * np.eye(2)
-        gradient = np.real(np.conj(matrix) @ residual.ravel())
-        curved = normal - self._bent(now, residual, of_ratio, low.bend)
-        return _Laid(start, ratio, float(np.sum(np.abs(residual) ** 2)), normal, gradient, curved)
+        factors = self._factors.copy()
+        factors[2] = of_ratio
+        shown = recorded.folded(now * factors[:, None])
+        residual = recorded.content - shown[0]
+        # real and imaginary parts side by side
+        slopes = shown[1:].reshape(2, -1).view(np.float64)
+        slopes[0] *= recorded.angle is None
+        flat = residual.ravel().view(np.float64)
+        (of_angle, of_both), (_, of_filter) = (slopes @ slopes.T).tolist()
+        damping = _DAMPING * (of_angle + of_filter + 1e-300)
+        normal = _Symmetric(of_angle + damping, of_both, of_filter + damping)
+        curved = self._curved(normal, now, residual, of_ratio, low.bend)
+        gradient = tuple((slopes @ flat).tolist())
+        return _Laid(start, ratio, float(flat @ flat), normal, gradient, curved)
 
-    def _bent(self, now: Complex, residual: Complex, of_ratio: Complex, bend: Complex) -> Array:
-        """Second changes (2, 2) of harmonics with angle and ratio along the residual.
-
-        Of those in the band: of the others they are small, and the steps end where they would.
-        """
-        band = residual.shape[1]
-        along = np.sum(np.conj(residual) * now[:, :band], axis=0)
-        turned, of_ratio, bend = self._turned[:band], of_ratio[:band], bend[:band]
-        of_both = np.real((turned * of_ratio) @ along)
-        of_angle, of_filter = np.real((turned**2) @ along), np.real((of_ratio**2 + bend) @ along)
+    def _curved(
+        self, normal: _Symmetric, now: Complex, residual: Complex, of_ratio: Complex, bend: Complex
+    ) -> _Symmetric:
+        """Normal matrix less the second changes of the harmonics along the residual."""
+        along = np.sum(self._recorded.unfolded(np.conj(residual)) * now, axis=0)
+        seconds = [self._turned_twice, self._turned * of_ratio, of_ratio * of_ratio + bend]
+        of_angle, of_both, of_filter = (np.array(seconds) @ along).real.tolist()
         if self._recorded.angle is not None:
             of_angle = of_both = 0.0
-        return np.array([[of_angle, of_both], [of_both, of_filter]])
+        return _Symmetric(normal.angle - of_angle, normal.both - of_both, normal.ratio - of_filter)
 
-    @staticmethod
-    def _step(at: _Laid, widest: Array) -> Array:
+    def _step(self, at: _Laid, width: float) -> tuple[float, float]:
         """Step in angle and ratio, no wider than some: the angle by what the ratio is held to."""
-        lowest, highest = max(-at.ratio, -widest[1]), min(_LOWEST_FILTER - at.ratio, widest[1])
-        is_minimum = at.curved[0, 0] > 0.0 and np.linalg.det(at.curved) > 0.0
+        widest_turn, widest_ratio = width * self._widest[0], width * self._widest[1]
+        lowest = max(-at.ratio, -widest_ratio)
+        highest = min(_LOWEST_FILTER - at.ratio, widest_ratio)
+        is_minimum = at.curved.angle > 0.0 and at.curved.determinant > 0.0
         curved = at.curved if is_minimum else at.normal
-        ratio = np.clip(np.linalg.solve(curved, at.gradient)[1], lowest, highest)
-        turn = (at.gradient[0] - curved[0, 1] * ratio) / curved[0, 0]
-        return np.array([np.clip(turn, -widest[0], widest[0]), ratio])
+        by_angle, by_ratio = at.gradient
+        ratio = (curved.angle * by_ratio - curved.both * by_angle) / curved.determinant
+        ratio = min(max(ratio, lowest), highest)
+        if ratio == 0.0 and at.curved.angle > 0.0:
+            curved = at.curved  # at a bound the angle alone has its minimum
+        turn = (by_angle - curved.both * ratio) / curved.angle
+        return min(max(turn, -widest_turn), widest_turn), ratio
 
     def _scanned(self) -> float:
         """Angle in the middle of the record at which the harmonics fit best."""

@@ -282,7 +282,10 @@ def _steady(one: _Settled, channels: Mapping[str, Channel], record: RecordDescri
         components, rows, revolutions_to_settle(one.case), one.revolutions, one.description
     )
     signals = dict(turned.signals)
-    signals["spindle_angle"] = steady.aligned(one.case).angle
+    laid = steady.aligned(one.case)
+    signals["spindle_angle"] = laid.angle
+    # predictions begin with the filter that the declared case tells
+    steady = replace(steady, recorded=replace(rows, filter_ratio=rows.sampling / laid.corner))
     turned = replace(turned, signals=signals, components=components)
     turned = with_power(turned, channels, one.idle, one.case.cut.spindle_speed)
     return replace(turned, record=replace(steady, has_power=POWER in turned.components))

@@ -1,5 +1,7 @@
 """The filter before the converter: what it lets pass, and its order, told by the records."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.signal
@@ -27,22 +29,29 @@ def case():
     return loads(CASE)
 
 
+def without_a_resonance(frequency, share, corner, **further):
+    """Harmonics of a model that lacks a resonance, and a record of 21 revolutions with it."""
+    sampling, speed = 1e4, 100.0 * TURN
+    orders = np.arange(1, 301)
+    time = np.arange(2100) / sampling
+    harmonics = np.where(orders % 2 == 0, 1.0 / orders**0.5, 0.1) * np.exp(1j * orders**2)
+    ratio = orders * speed / (TURN * frequency)
+    cut = harmonics * (1.0 + share / (1.0 - ratio**2 + 0.1j * ratio))
+    b, a = scipy.signal.butter(4, TURN * corner, analog=True)
+    filtered = cut * scipy.signal.freqs(b, a, orders * speed)[1]
+    signal = np.real(filtered @ np.exp(1j * np.outer(orders, speed * time + 1.1)))
+    deviation, usable = np.full(1, 1e-3), np.ones(time.size)
+    recorded = Recorded(time, signal[None, :], deviation, usable, speed, TURN, **further)
+    return harmonics[None, : recorded.orders.size], recorded
+
+
 def test_a_model_that_lacks_something_is_laid_as_well_as_any_angle_and_filter_would():
     """A filter delays as an angle does: on the way to the best of both, neither stops the other.
 
     The model lacks a resonance at 1.1 kHz; every angle and corner is tried beside it.
     """
-    sampling, speed = 1e4, 100.0 * TURN
-    orders = np.arange(1, 301)
-    time = np.arange(2100) / sampling  # 21 revolutions
-    harmonics = np.where(orders % 2 == 0, 1.0 / orders**0.5, 0.1) * np.exp(1j * orders**2)
-    ratio = orders * speed / (TURN * 1100.0)
-    cut = harmonics * (1.0 + 0.3 / (1.0 - ratio**2 + 0.1j * ratio))
-    b, a = scipy.signal.butter(4, TURN * 2900.0, analog=True)
-    filtered = cut * scipy.signal.freqs(b, a, orders * speed)[1]
-    signal = np.real(filtered @ np.exp(1j * np.outer(orders, speed * time + 1.1)))
-    recorded = Recorded(time, signal[None, :], np.full(1, 1e-3), np.ones(time.size), speed, TURN)
-    known = harmonics[None, : recorded.orders.size]
+    known, recorded = without_a_resonance(1100.0, 0.3, 2900.0)
+    sampling = recorded.sampling
     found = aligned(known, recorded)
 
     def left(start, corner):
@@ -55,6 +64,37 @@ def test_a_model_that_lacks_something_is_laid_as_well_as_any_angle_and_filter_wo
     starts = found.start + np.linspace(-0.15, 0.15, 61)
     best = min(left(one, corner) for one in starts for corner in np.geomspace(2500.0, 8000.0, 30))
     assert left(found.start, found.corner) <= best
+
+
+def test_a_model_that_lacks_something_is_laid_beside_its_record_in_a_few_steps(monkeypatch):
+    """What the model lacks curves the misfit too: steps without that do not converge in 20."""
+    known, recorded = without_a_resonance(1500.0, 0.3, 4500.0)
+    folded, asked = Recorded.folded, []
+    monkeypatch.setattr(Recorded, "folded", lambda *given: asked.append(1) or folded(*given))
+    aligned(known, recorded)
+    assert len(asked) < 8
+
+
+def test_of_two_filters_that_fit_at_all_the_better_is_found_from_that_of_the_record():
+    misfit = [
+        aligned(*without_a_resonance(1500.0, 0.7, 4500.0, **further)).misfit
+        for further in ({}, {"filter_ratio": 5.0})
+    ]
+    assert misfit[1] < 0.96 * misfit[0]
+
+
+def test_to_fold_weights_back_is_the_adjoint_of_folding():
+    """Excluded samples too: mean products of any two harmonics differ from nothing then."""
+    _, recorded = without_a_resonance(1500.0, 0.3, 4500.0)
+    recorded = replace(recorded, usable=(np.arange(2100) % 7 > 1).astype(float))
+    random = np.random.default_rng(1)
+
+    def drawn(count):
+        return random.standard_normal((2, count)) + 1j * random.standard_normal((2, count))
+
+    harmonics, weights = drawn(recorded.orders.size), drawn(recorded.in_band)
+    shown = np.sum(weights * recorded.folded(harmonics)).real
+    assert np.sum(recorded.unfolded(weights) * harmonics).real == pytest.approx(shown, rel=1e-9)
 
 
 def test_what_the_filter_lets_pass_above_the_band_is_predicted():
