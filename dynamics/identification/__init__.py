@@ -7,6 +7,7 @@
 | stabilisation | diagram and poles that stay put | |
 | residues | residues and residual terms of known poles | Heylen, Lammens and Sas 1998 |
 | refinement | maximum-likelihood poles by variable projection | Golub and Pereyra 1973 |
+| condensed | long FRFs on fewer lines that say the same | Golub and Welsch 1969 |
 | mode_quality, selection | number of modes | Schwarz 1978 |
 | delay | delay between the channels, before any residue | |
 | discrepancy | what a model misses beyond the noise | Kennedy and O'Hagan 2001 |

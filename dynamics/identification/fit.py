@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.band import Band, widened
 from dynamics.identification.beyond_band import modes_beyond
+from dynamics.identification.condensed import SearchRecords
 from dynamics.identification.delay import channel_delay, without_delay
 from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.polynomial import polyreference_poles
@@ -20,7 +21,7 @@ from dynamics.identification.prepare import (
     sets_with_common_poles,
     tool_point_records,
 )
-from dynamics.identification.refinement import ModalModel, fit_residues, refine
+from dynamics.identification.refinement import ModalModel, fit_residues, refine, refine_poles
 from dynamics.identification.report import (
     complex_frf_model,
     identified_complex_modes,
@@ -45,7 +46,7 @@ from dynamics.identification.stabilisation import (
     stable_poles,
 )
 from dynamics.identification.tool_point import ToolPointFit, fit_tool_point
-from dynamics.least_squares import ROUGH
+from dynamics.least_squares import PRECISE, ROUGH
 
 #: largest order of the pLSCF model unless there are few lines
 HIGHEST_ORDER = 80
@@ -192,13 +193,14 @@ def _search(
     frfs = [measurement.frfs[i] for i in frf_set.members]
     diagram = _diagram(records, frfs, max_order)
     frequency, damping = stable_poles(diagram)
-    start = fit_residues(records, 2.0 * np.pi * frequency, damping, ALL_TERMS)
-    kept = drop_unsupported(records, refine(records, start))
-    model = add_missing(records, add_curvature(records, kept))
+    search = SearchRecords.of(records)
+    start = refine_poles(search.fewer, 2.0 * np.pi * frequency, damping, ALL_TERMS)
+    kept = drop_unsupported(search, start)
+    model = add_missing(search, add_curvature(search, kept))
     if model is not kept:
-        model = drop_unsupported(records, model)
+        model = drop_unsupported(search, model)
     if mode_count is not None:
-        model = with_mode_count(records, model, mode_count)
+        model = with_mode_count(search, model, mode_count)
     return diagram, model
 
 
@@ -213,8 +215,9 @@ def _from_poles(
     diagram = _diagram(records, [measurement.frfs[i] for i in frf_set.members], max_order)
     chosen = [pole for pole in sorted(poles) if _has_pole(diagram, *pole)]
     frequency, damping = np.array(chosen, dtype=np.float64).reshape(-1, 2).T
-    start = fit_residues(records, 2.0 * np.pi * frequency, damping, ALL_TERMS)
-    return diagram, add_curvature(records, refine(records, start))
+    search = SearchRecords.of(records)
+    start = refine_poles(search.fewer, 2.0 * np.pi * frequency, damping, ALL_TERMS)
+    return diagram, add_curvature(search, start)
 
 
 def _has_pole(diagram: StabilisationDiagram, frequency: float, damping: float) -> bool:
@@ -230,8 +233,11 @@ def _fit_set(
     drives = np.array([pair is not None and pair[0] == pair[1] for pair in frf_set.pairs])
     delay = channel_delay(records, model, drives)
     records = without_delay(records, delay)
-    start = fit_residues(records, model.natural_frequency, model.damping, model.terms)
-    model = choose_terms(records, refine(records, start))
+    search = SearchRecords.of(records)
+    model = refine_poles(search.fewer, model.natural_frequency, model.damping, model.terms)
+    model = choose_terms(search, model)
+    if search.fewer is not records:
+        model = refine(records, model)
     tool = None
     if not frf_set.reason and model.count:
         tool = fit_tool_point(tool_point_records(records, frf_set), model, fewest)
@@ -343,21 +349,21 @@ def _delay_note(fit: _SetFit) -> list[str]:
     return [f"the response lags the force by {delay * 1e6:.2f} us; this was taken off the modes"]
 
 
-def add_curvature(records: Records, model: ModalModel) -> ModalModel:
+def add_curvature(records: SearchRecords, model: ModalModel) -> ModalModel:
     """Add the next residual terms of the modes beyond the lines where the data support them."""
     for power in CURVATURE_TERMS:
-        grown = refine(records, _with_terms(records, model, (*model.terms, power)), ROUGH)
-        if _supports(records, grown, model):
-            model = refine(records, grown)
+        grown = _with_terms(records.fewer, model, (*model.terms, power), ROUGH)
+        if _supports(records.lines, grown, model):
+            model = refine(records.fewer, grown)
     return model
 
 
-def choose_terms(records: Records, model: ModalModel) -> ModalModel:
+def choose_terms(records: SearchRecords, model: ModalModel) -> ModalModel:
     """Leave out the residual terms that the data do not support (Schwarz 1978)."""
     for power in model.terms:
         terms = tuple(p for p in model.terms if p != power)
-        lesser = refine(records, _with_terms(records, model, terms))
-        if not _supports(records, model, lesser):
+        lesser = _with_terms(records.fewer, model, terms, PRECISE)
+        if not _supports(records.lines, model, lesser):
             model = lesser
     return model
 
@@ -369,5 +375,7 @@ def _supports(records: Records, larger: ModalModel, smaller: ModalModel) -> bool
     return bool((smaller.chi_square - larger.chi_square) / misfit > price)
 
 
-def _with_terms(records: Records, model: ModalModel, terms: tuple[int, ...]) -> ModalModel:
-    return fit_residues(records, model.natural_frequency, model.damping, terms)
+def _with_terms(
+    records: Records, model: ModalModel, terms: tuple[int, ...], least_gain: float
+) -> ModalModel:
+    return refine_poles(records, model.natural_frequency, model.damping, terms, least_gain)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.refinement import ModalModel, fit_residues
+from dynamics.identification.condensed import SearchRecords
+from dynamics.identification.refinement import TINY, ModalModel, fit_residues
 from dynamics.identification.residues import Records
 
 #: a mode that adds less than this, relative to the FRF where the mode is, only mends the shape
@@ -29,9 +30,6 @@ SHARE_OF_A_DOUBLE = 0.2
 
 #: chi-square per degree of freedom taken at least: the noise may be estimated too high
 LEAST_MISFIT = 0.25
-
-#: smallest divisor
-TINY = 1e-300
 
 
 @dataclass(frozen=True)
@@ -129,28 +127,26 @@ def _likeness(model: ModalModel, mode: int) -> NDArray[np.float64]:
 
 
 def mode_quality(
-    records: Records, model: ModalModel, mode: int, without: ModalModel
+    records: SearchRecords, model: ModalModel, mode: int, chi_square_without: float
 ) -> ModeQuality:
-    """Weigh one mode of a model against the model without it.
-
-    `without` is the best fit without that mode.
-    """
-    misfit = max(local_misfit(records, model, mode), LEAST_MISFIT)
-    price = parameters_of_a_mode(records) * np.log(2.0 * records.values.size)
-    gain = (without.chi_square - model.chi_square) / misfit / price
-    contribution = np.abs(model.mode_contribution(records, mode))
+    """Weigh one mode of a model against the best fit without that mode, given its chi-square."""
+    lines, fewer = records.lines, records.fewer
+    misfit = max(local_misfit(lines, model, mode), LEAST_MISFIT)
+    price = parameters_of_a_mode(lines) * np.log(2.0 * lines.values.size)
+    gain = (chi_square_without - model.chi_square) / misfit / price
+    contribution = model.mode_contribution(fewer, mode)
     hertz = model.natural_frequency[mode] / (2.0 * np.pi)
-    distance = np.abs(records.frequency - hertz)
+    distance = np.abs(fewer.frequency - hertz)
     near = distance <= max(model.damping[mode] * hertz, np.min(distance))
-    values = np.abs(records.values)
-    local = np.max(contribution[near], axis=0) / np.maximum(np.max(values[near], axis=0), TINY)
+    values = np.max(np.abs(fewer.values[near]), axis=0)
+    local = np.max(np.abs(contribution[near]), axis=0) / np.maximum(values, TINY)
     local_share = float(np.max(local))
     return ModeQuality(
-        gain,
+        float(gain),
         local_share,
-        peak_share(records, model, mode),
-        resolved(records, model, mode, local_share),
-        bool(inside(records, model)[mode]),
+        largest_share(fewer, contribution),
+        resolved(lines, model, mode, local_share),
+        bool(inside(lines, model)[mode]),
     )
 
 

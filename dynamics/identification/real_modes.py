@@ -206,7 +206,7 @@ def _evaluate(
     residual = lag * residual_columns(s, terms, records.derivative)
     normal = np.zeros((parameters.size, parameters.size))
     gradient = np.zeros(parameters.size)
-    chi_square = 0.0
+    chi_square = records.remainder
     free = []
     for k, pair in enumerate(tool.pairs):
         noise = records.noise[:, k]

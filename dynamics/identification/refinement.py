@@ -19,6 +19,8 @@ from dynamics.least_squares import PRECISE, least_squares
 
 #: damping ratios outside these bounds are not followed
 DAMPING_BOUNDS = (1e-6, 0.9)
+#: smallest divisor
+TINY = 1e-300
 #: share of a column that lies across others, below which it is not found as a difference
 _LEAST_ACROSS = 1e-6
 
@@ -88,7 +90,7 @@ def fit_residues(
     coefficients = np.zeros((columns.shape[1], records.count))
     normal = np.zeros((size, size))
     gradient = np.zeros(size)
-    chi_square = 0.0
+    chi_square = records.remainder
     turn = records.laplace[:, None] / natural_frequency
     for k in range(records.count):
         noise = records.noise[:, k]
@@ -152,6 +154,57 @@ def _products_across(tall: NDArray[np.float64], basis: NDArray[np.float64]) -> N
     return gram(across, across)
 
 
+def rises_without_a_mode(records: Records, model: ModalModel) -> NDArray[np.float64]:
+    """Rise of the chi-square without each mode of a model, (m,), the poles of the others kept."""
+    shapes = mode_shapes_in_frequency(
+        records.laplace, model.natural_frequency, model.damping, records.derivative
+    )
+    columns = design_matrix(records, shapes, model.natural_frequency, model.terms)
+    found = np.zeros(model.count)
+    for k in range(records.count):
+        matrix = as_real(columns, records.noise[:, k])
+        scale = np.maximum(np.linalg.norm(matrix, axis=0), TINY)
+        inverse = np.linalg.pinv(factorise(matrix / scale)[1], rcond=1e-13)
+        amplitude = (model.coefficients[:, k] * scale)[: 2 * model.count].reshape(2, -1).T
+        rows = inverse[: 2 * model.count].reshape(2, model.count, -1).transpose(1, 0, 2)
+        covariance = rows @ rows.transpose(0, 2, 1)
+        solution = np.linalg.pinv(covariance, hermitian=True) @ amplitude[:, :, None]
+        found += np.einsum("mi,mi->m", amplitude, solution[:, :, 0])
+    return found
+
+
+def falls_with_a_pole(
+    records: Records,
+    model: ModalModel,
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Fall of the chi-square that each of some poles (p,) alone brings, those of a model kept.
+
+    Only what the columns of the newcomer have across those of the model is fitted.
+    """
+    own = mode_shapes_in_frequency(
+        records.laplace, model.natural_frequency, model.damping, records.derivative
+    )
+    columns = design_matrix(records, own, model.natural_frequency, model.terms)
+    new = mode_shapes_in_frequency(
+        records.laplace, natural_frequency, damping, records.derivative
+    ).unit
+    new = np.stack([new, new * (records.laplace[:, None] / natural_frequency)], axis=2)
+    found = np.zeros(natural_frequency.size)
+    for k in range(records.count):
+        noise = records.noise[:, k]
+        _, residual, basis = solve_linear(columns, records.values[:, k], noise)
+        tall = as_real(new.reshape(noise.size, -1), noise)
+        tall /= np.maximum(np.linalg.norm(tall, axis=0), TINY)
+        across = (tall - product(basis, gram(basis, tall))).reshape(residual.size, -1, 2)
+        normal = np.einsum("npi,npj->pij", across, across)
+        along = np.einsum("npi,n->pi", across, residual)
+        solution = np.linalg.pinv(normal, rcond=1e-12, hermitian=True) @ along[:, :, None]
+        found += np.einsum("pi,pi->p", along, solution[:, :, 0])
+    return found
+
+
 def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> ModalModel:
     """Move the poles to the weighted nonlinear least-squares optimum.
 
@@ -162,13 +215,24 @@ def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> 
     It ends at a relative fall of the chi-square in one step below `least_gain`, and is never worse
     than `start` with residues refitted.
     """
-    modes = start.count
+    return refine_poles(records, start.natural_frequency, start.damping, start.terms, least_gain)
+
+
+def refine_poles(
+    records: Records,
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    terms: tuple[int, ...],
+    least_gain: float = PRECISE,
+) -> ModalModel:
+    """`refine` from frequencies, rad/s, and damping ratios (m,)."""
+    modes = natural_frequency.size
 
     def evaluate(parameters: NDArray[np.float64]) -> ModalModel:
-        return fit_residues(records, *bounded_poles(records, parameters, modes), start.terms)
+        return fit_residues(records, *bounded_poles(records, parameters, modes), terms)
 
-    poles = np.concatenate([np.log(start.natural_frequency), np.log(start.damping)])
-    return least_squares(evaluate, poles, pole_reach(start.damping), least_gain)
+    poles = np.concatenate([np.log(natural_frequency), np.log(damping)])
+    return least_squares(evaluate, poles, pole_reach(damping), least_gain)
 
 
 def pole_range(records: Records) -> tuple[float, float]:

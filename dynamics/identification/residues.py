@@ -19,6 +19,8 @@ class Records:
     #: of an exponential window on the time records, rad/s: the measured function is that of the
     #: structure at s = added_decay + i omega
     added_decay: float = 0.0
+    #: sum of squares over the noise that lines which were condensed no longer show
+    remainder: float = 0.0
 
     @property
     def laplace(self) -> NDArray[np.complex128]:

@@ -6,8 +6,16 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from dynamics.identification.condensed import SearchRecords
 from dynamics.identification.mode_quality import inside, mode_quality, without_mode
-from dynamics.identification.refinement import ModalModel, fit_residues, pole_range, refine
+from dynamics.identification.refinement import (
+    ModalModel,
+    falls_with_a_pole,
+    pole_range,
+    refine,
+    refine_poles,
+    rises_without_a_mode,
+)
 from dynamics.identification.residues import Records
 from dynamics.identification.stabilisation import HIGHEST_DAMPING
 from dynamics.least_squares import ROUGH
@@ -24,39 +32,63 @@ MOST_TRIALS = 4
 #: poles that may stand for the modes beyond either end of the lines
 MOST_BEYOND = 2
 
+#: part of the half bandwidth, and of the damping, by which a pole may move and counts as the same
+_STAYED = 0.05
+
 #: rounds of adding modes one by one
 MOST_ADDED = 30
 
 
-def drop_unsupported(records: Records, model: ModalModel) -> ModalModel:
+def drop_unsupported(records: SearchRecords, model: ModalModel) -> ModalModel:
     """Leave out, one by one, the modes that the data do not support, weakest first.
 
     The model is refined, and so is the one returned, in which every mode is supported.
     """
+    supported = np.zeros((0, 2))
     while model.count:
-        astray = _astray(records, model)
-        doubtful = int(astray[0]) if astray.size else _unsupported(records, model)
+        astray = _astray(records.fewer, model)
+        if astray.size:
+            doubtful: int | None = int(astray[0])
+        else:
+            doubtful, supported = _unsupported(records, model, supported)
         if doubtful is None:
             return model
-        model = refine(records, without_mode(records, model, doubtful))
+        model = refine(records.fewer, without_mode(records.fewer, model, doubtful))
     return model
 
 
-def _unsupported(records: Records, model: ModalModel) -> int | None:
-    """The mode of least weight that is not supported, None where all are."""
-    for mode in _by_contribution(records, model):
-        without = without_mode(records, model, mode)
-        first = mode_quality(records, model, mode, without)
+def _unsupported(
+    records: SearchRecords, model: ModalModel, supported: NDArray[np.float64]
+) -> tuple[int | None, NDArray[np.float64]]:
+    """The mode of least weight that is not supported, None where all are.
+
+    And the poles (p, 2) found to be, frequency, rad/s, and damping, with those of before: a mode
+    that is still where it was is not tried again without it, the others moved.
+    """
+    without = model.chi_square + rises_without_a_mode(records.fewer, model)
+    kept = list(supported)
+    for mode in _by_contribution(records.fewer, model):
+        pole = model.natural_frequency[mode], model.damping[mode]
+        first = mode_quality(records, model, mode, float(without[mode]))
         distance = _distance(model, mode)
         alone = first.gain > CLEAR_GAIN and distance > 5.0
-        if first.supported and (alone or (first.gain > 100.0 * CLEAR_GAIN and distance > 1.5)):
+        clear = alone or (first.gain > 100.0 * CLEAR_GAIN and distance > 1.5)
+        if first.supported and (clear or _is_among(pole, supported)):
             continue  # no other mode could take its place
         if not first.supported:
-            return mode
-        without = refine(records, without, ROUGH)
-        if not mode_quality(records, model, mode, without).supported:
-            return mode
-    return None
+            return mode, np.reshape(kept, (-1, 2))
+        best = refine(records.fewer, without_mode(records.fewer, model, mode), ROUGH)
+        if not mode_quality(records, model, mode, best.chi_square).supported:
+            return mode, np.reshape(kept, (-1, 2))
+        kept.append(np.array(pole))
+    return None, np.reshape(kept, (-1, 2))
+
+
+def _is_among(pole: tuple[float, float], poles: NDArray[np.float64]) -> bool:
+    """Whether a pole has stayed, within a part of its bandwidth."""
+    frequency, damping = poles.T
+    same = np.abs(frequency - pole[0]) < _STAYED * pole[1] * pole[0]
+    return bool(np.any(same & (np.abs(np.log(damping / pole[1])) < _STAYED)))
 
 
 def _distance(model: ModalModel, mode: int) -> float:
@@ -69,7 +101,7 @@ def _distance(model: ModalModel, mode: int) -> float:
     return float(np.min(apart / np.maximum(bandwidth[others], bandwidth[mode])))
 
 
-def add_missing(records: Records, model: ModalModel) -> ModalModel:
+def add_missing(records: SearchRecords, model: ModalModel) -> ModalModel:
     """Add modes where the residual still has structure, as long as the data support them.
 
     The model is refined, and so is the one returned.
@@ -82,20 +114,22 @@ def add_missing(records: Records, model: ModalModel) -> ModalModel:
     return model
 
 
-def with_mode_count(records: Records, model: ModalModel, count: int) -> ModalModel:
+def with_mode_count(records: SearchRecords, model: ModalModel, count: int) -> ModalModel:
     """Bring a model to a number of modes that the user wants.
 
     The model is refined; it has fewer modes than asked for only where no more could be placed
     inside the band.
     """
-    while np.sum(inside(records, model)) > count:
-        lesser = [refine(records, without_mode(records, model, r)) for r in range(model.count)]
+    while np.sum(inside(records.lines, model)) > count:
+        lesser = [
+            refine(records.fewer, without_mode(records.fewer, model, r)) for r in range(model.count)
+        ]
         model = min(lesser, key=lambda m: m.chi_square)
-    while np.sum(inside(records, model)) < count:
-        grown = [g for g, r in _additions(records, model) if inside(records, g)[r]]
+    while np.sum(inside(records.lines, model)) < count:
+        grown = [g for g, r in _additions(records.fewer, model) if inside(records.lines, g)[r]]
         if not grown:
             return model
-        model = refine(records, min(grown, key=lambda m: m.chi_square))
+        model = refine(records.fewer, min(grown, key=lambda m: m.chi_square))
     return model
 
 
@@ -116,40 +150,41 @@ def _by_contribution(records: Records, model: ModalModel) -> list[int]:
     return [int(r) for r in np.argsort(weight)]
 
 
-def _best_addition(records: Records, model: ModalModel) -> ModalModel | None:
+def _best_addition(records: SearchRecords, model: ModalModel) -> ModalModel | None:
     """The model with the one more mode that helps most, None where none is supported."""
-    for grown, newcomer in _additions(records, model):
-        if mode_quality(records, grown, newcomer, model).supported:
-            return refine(records, grown)
+    for grown, newcomer in _additions(records.fewer, model):
+        if mode_quality(records, grown, newcomer, model.chi_square).supported:
+            return refine(records.fewer, grown)
     return None
 
 
 def _additions(records: Records, model: ModalModel) -> Iterator[tuple[ModalModel, int]]:
     """Refined models with one more mode, the most promising first, and which is the new one."""
-    best = []
-    for frequency in _places(records, model):
-        trials = [_with_pole(records, model, frequency, damping) for damping in TRIAL_DAMPINGS]
-        best.append(min(trials, key=lambda trial: trial.chi_square))
-    low, high = float(records.frequency[0]), float(records.frequency[-1])
-    hertz = model.natural_frequency / (2.0 * np.pi)
-    beyond = (0.4 * low, 0.8 * low) if np.sum(hertz < low) < MOST_BEYOND else ()
-    beyond += (1.1 * high, 1.6 * high) if np.sum(hertz > high) < MOST_BEYOND else ()
-    if beyond:
-        trials = [_with_pole(records, model, f, TRIAL_DAMPINGS[2]) for f in beyond]
-        best.append(min(trials, key=lambda trial: trial.chi_square))
-    for trial in sorted(best, key=lambda trial: trial.chi_square):
-        grown = refine(records, trial, ROUGH)
+    for hertz, damping in _promising(records, model):
+        grown = refine_poles(
+            records,
+            np.append(model.natural_frequency, 2.0 * np.pi * hertz),
+            np.append(model.damping, damping),
+            model.terms,
+            ROUGH,
+        )
         if _astray(records, grown).size == 0:
             yield grown, _newcomer(model, grown)
 
 
-def _with_pole(records: Records, model: ModalModel, frequency: float, damping: float) -> ModalModel:
-    return fit_residues(
-        records,
-        np.append(model.natural_frequency, 2.0 * np.pi * frequency),
-        np.append(model.damping, damping),
-        model.terms,
-    )
+def _promising(records: Records, model: ModalModel) -> list[tuple[float, float]]:
+    """Poles (Hz, damping) to begin with: the best of each place, by falling promise."""
+    low, high = float(records.frequency[0]), float(records.frequency[-1])
+    hertz = model.natural_frequency / (2.0 * np.pi)
+    beyond = (0.4 * low, 0.8 * low) if np.sum(hertz < low) < MOST_BEYOND else ()
+    beyond += (1.1 * high, 1.6 * high) if np.sum(hertz > high) < MOST_BEYOND else ()
+    trials = [[(f, damping) for damping in TRIAL_DAMPINGS] for f in _places(records, model)]
+    if beyond:
+        trials.append([(f, TRIAL_DAMPINGS[2]) for f in beyond])
+    frequency, damping = np.array([pole for place in trials for pole in place]).T
+    falls = iter(falls_with_a_pole(records, model, 2.0 * np.pi * frequency, damping).tolist())
+    best = [max((next(falls), *pole) for pole in place) for place in trials]
+    return [(f, d) for _, f, d in sorted(best, reverse=True)]
 
 
 def _newcomer(model: ModalModel, grown: ModalModel) -> int:

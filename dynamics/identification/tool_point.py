@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.identification.condensed import condensed
 from dynamics.identification.delay import without_delay
 from dynamics.identification.discrepancy import effective_samples, with_discrepancy
 from dynamics.identification.mode_quality import LEAST_PEAK_SHARE, TINY, largest_share, peak_share
@@ -80,8 +81,9 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
     if not np.any(right):
         reason = "no mode with a positive mass was found"
         return ToolPointFit(None, tool, senses, reason, tuple(notes))
+    fewer = _condensed(tool)
     real = refine_real_modes(
-        tool,
+        fewer,
         model.natural_frequency[right],
         model.damping[right],
         vectors[right],
@@ -97,15 +99,14 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
         listed = ", ".join(f"{hertz:.1f} Hz" for hertz in large)
         reason = f"not a drive point: the modes at {listed} have the opposite sign of the others"
         return ToolPointFit(None, tool, senses, reason, tuple(notes))
-    real = _with_second_vectors(tool, real, model, right)
+    real = _with_second_vectors(fewer, real, model, right)
     delay = 0.0
     if _misses_more_than_noise(tool, real):
         # with the small resonances gone the delay would stand for what they do to the phase
         delay = _supported_delay(tool, real)
         tool = replace(tool, records=without_delay(tool.records, delay))
-        real = _again(tool, real, real.terms, None)
+        real = _again(_condensed(tool), real, real.terms, None)
     tool, real = _drop_weak(tool, real, fewest)
-    real = _choose_terms(tool, real)
     if real.count == 0:
         return ToolPointFit(None, tool, senses, "no mode with a positive mass was found", ())
     for share, hertz in wrong:
@@ -219,34 +220,40 @@ def _drop_weak(
     A small resonance of a joint or of the machine is then part of the residual; the noise of the
     records that are returned includes what the model misses.
     """
-    fewer = replace(tool, records=_judged_lines(tool.records, real))
+    lines = replace(tool, records=_judged_lines(tool.records, real))
     kept = real
-    judged = replace(fewer, records=with_discrepancy(fewer.records, kept.synthesis(fewer)))
-    kept = _again(judged, kept, kept.terms, kept.delay, ROUGH)
+    judged = _with_discrepancy(lines, kept)
+    fitted = _condensed(judged)
+    kept = _again(fitted, kept, kept.terms, kept.delay, ROUGH)
     while kept.count > fewest:
-        lesser = _without(judged, kept, _weakest(judged, kept))
+        lesser = _without(fitted, kept, _weakest(fitted, kept))
         if _worth_a_mode(judged, kept, lesser):
             break
         kept = lesser
-        judged = replace(fewer, records=with_discrepancy(fewer.records, kept.synthesis(fewer)))
+        judged = _with_discrepancy(lines, kept)
+        fitted = _condensed(judged)
     while kept.count > max(fewest, 1):
-        immaterial = _immaterial(judged, fewer, kept)
+        immaterial = _immaterial(judged, lines, kept)
         if immaterial is None:
             break
-        kept = _without(judged, kept, immaterial)
+        kept = _without(fitted, kept, immaterial)
     if kept.count == 0:
         return tool, kept
     if kept.count == real.count:
         kept = real
-    judged = replace(tool, records=with_discrepancy(tool.records, kept.synthesis(tool)))
+    judged = _with_discrepancy(tool, kept)
     if _much_above(judged, tool):
         judged = replace(judged, records=by_their_crests(judged, kept))
-    return judged, _again(judged, kept, kept.terms, kept.delay)
+    return judged, _with_chosen_terms(judged, kept)
 
 
 def _misses_more_than_noise(tool: ToolPointRecords, real: RealModel) -> bool:
-    judged = replace(tool, records=with_discrepancy(tool.records, real.synthesis(tool)))
-    return _much_above(judged, tool)
+    return _much_above(_with_discrepancy(tool, real), tool)
+
+
+def _with_discrepancy(tool: ToolPointRecords, real: RealModel) -> ToolPointRecords:
+    """Lines whose noise includes what a model misses."""
+    return replace(tool, records=with_discrepancy(tool.records, real.synthesis(tool)))
 
 
 def _much_above(judged: ToolPointRecords, tool: ToolPointRecords) -> bool:
@@ -259,7 +266,7 @@ def _much_above(judged: ToolPointRecords, tool: ToolPointRecords) -> bool:
 
 def _supported_delay(tool: ToolPointRecords, real: RealModel) -> float:
     """Delay of a model of all modes, s; 0 where the data do not ask for one (Schwarz 1978)."""
-    judged = replace(tool, records=with_discrepancy(tool.records, real.synthesis(tool)))
+    judged = _with_discrepancy(tool, real)
     without = _again(judged, real, real.terms, None, ROUGH)
     return float(real.delay or 0.0) if _worth(judged, real, without, 1) else 0.0
 
@@ -339,19 +346,26 @@ def _worth(tool: ToolPointRecords, larger: RealModel, lesser: RealModel, unknown
     return bool(gain > unknowns * np.log(max(samples, np.e)))
 
 
-def _choose_terms(tool: ToolPointRecords, real: RealModel) -> RealModel:
-    """Leave out delay and residual terms that the data do not support (Schwarz 1978)."""
+def _with_chosen_terms(tool: ToolPointRecords, real: RealModel) -> RealModel:
+    """Refine without the delay and residual terms that the data do not support (Schwarz 1978)."""
+    fewer = _condensed(tool)
+    real = _again(fewer, real, real.terms, real.delay)
     unknown = float(np.log(2.0 * tool.records.values.size))
-    lesser = _again(tool, real, real.terms, None)
+    lesser = _again(fewer, real, real.terms, None)
     if (lesser.chi_square - real.chi_square) / _misfit(tool, real) < unknown:
         real = lesser
     for power in real.terms:
         terms = tuple(p for p in real.terms if p != power)
-        lesser = _again(tool, real, terms, real.delay)
+        lesser = _again(fewer, real, terms, real.delay)
         price = tool.records.count * unknown
         if (lesser.chi_square - real.chi_square) / _misfit(tool, real) < price:
             real = lesser
-    return real
+    return real if fewer is tool else _again(tool, real, real.terms, real.delay)
+
+
+def _condensed(tool: ToolPointRecords) -> ToolPointRecords:
+    records = condensed(tool.records)
+    return tool if records is tool.records else replace(tool, records=records)
 
 
 def _again(
