@@ -101,5 +101,6 @@ def _import(catalogue: Path, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     written = folder / "library.toml"
     written.write_text(text, encoding="utf-8")
-    print_line(f"{len(names)} tools: {', '.join(names[:5])}{', ...' if len(names) > 5 else ''}")
+    listed = ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
+    print_line(f"{len(names)} {'tool' if len(names) == 1 else 'tools'}: {listed}")
     print_line(f"wrote {written}")

@@ -44,6 +44,8 @@ _LINEAR_KEYS = 6
 _MOST_RAKE = 0.25 * math.pi
 #: tangential coefficients of foam and of hardened steel at thin chips, with room to spare, Pa
 _SOFTEST, _HARDEST = 5e6, 3e10
+#: paths of a run that state its feed
+_FEEDS = {"cut.feed_per_tooth", "cut.feed_rate"}
 #: share of variance of a channel over the cuts that a straight line leaves, worth telling
 _LINEAR_SHARE = 0.95
 
@@ -277,6 +279,7 @@ class Coefficients(NotebookResult):
                 "radial one smaller than the tangential one"
             )
         notes += self._of_no_material()
+        notes += self._of_feeds_not_stated()
         if self.by_waveforms:
             return [*notes, *self._notes_of_waveforms()]
         if self.linear_law_holds is False:
@@ -312,6 +315,18 @@ class Coefficients(NotebookResult):
             f"Ktc is {1e-6 * tangential:.3g} MPa, where what is milled has {1e-6 * _SOFTEST:g} to "
             f"{1e-6 * _HARDEST:g} MPa: check the unit of the forces in the heading, the feed and "
             "the axial depth"
+        ]
+
+    def _of_feeds_not_stated(self) -> list[str]:
+        """That some runs have the feed of the case, where others state their own."""
+        runs, case = self.measurement.runs, self.measurement.case
+        silent = [run.name for run in runs if _FEEDS.isdisjoint(run.overrides)]
+        if not silent or len(silent) == len(runs):
+            return []
+        feed = f"{1e3 * case.get('cut.feed_per_tooth'):.4g} mm a tooth"
+        return [
+            f"{', '.join(silent)}: measurement.toml states no feed, as of the other runs; that of "
+            f"the case is taken, {feed}"
         ]
 
     def _notes_of_waveforms(self) -> list[str]:

@@ -11,7 +11,8 @@ import pytest
 
 import chatter
 from chatter.assembly.assembly_file import AssemblyFile
-from chatter.assembly.library import shipped_library
+from chatter.assembly.catalogue import library_of_catalogue
+from chatter.assembly.library import Library, shipped_library
 from chatter.assembly.line import holder_segments, round_segments, tool_segments
 from chatter.assembly.spindle import modelled_spindle
 from chatter.assembly.tool_point import Base, tool_point_receptance
@@ -260,9 +261,36 @@ def test_catalogue_becomes_a_library(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "Bezeichnung;Durchmesser [mm];Schneidenlänge [mm];Gesamtlänge [mm];Schneidenzahl\n"
+        "A;12,5;26,0;83,0;4\n",
+        "tool name,diameter mm,flute length mm,overall length mm,number of flutes\n"
+        "A,12.5,26,83,4\n",
+        "Katalog 2024;;;;\nArt.-Nr.;D1/mm;L2, mm;OAL in mm;Zähnezahl\nA;12,5;26;83;4,0\n",
+        "name;diameter;flute length;length;z\nA;12,5 mm;2,6 cm;83 mm;4\n",
+        'name,diameter [mm],flute length [mm],length [mm],teeth\nA,"12,5",26,83,4\n',
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "cp1252", "utf-16"])
+def test_catalogues_as_shops_have_them(tmp_path, text, encoding):
+    catalogue = tmp_path / "maker.csv"
+    catalogue.write_bytes(text.encode(encoding))
+    library, names = library_of_catalogue(catalogue)
+    assert names == ["A"]
+    tool = Library.from_text(library, "library").tool["A"]
+    assert tool.diameter == pytest.approx(12.5e-3)
+    assert tool.flute_length == pytest.approx(26e-3)
+    assert tool.length == pytest.approx(83e-3)
+    assert tool.teeth == 4
+
+
+@pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("name,diameter,flute length [mm],length [mm]\n", "no unit"),
+        ("name,diameter,flute length [mm],length [mm]\nA,12,26,83\n", "no unit"),
+        ('name,diameter [mm],flute length [mm],length [mm]\nA,"1,200",26,83\n', "thousand"),
+        ("name,diameter [mm],flute length [mm],length [mm],z\nA,12,26,83,4.5\n", "whole number"),
         ("name,diameter [mm],length [mm]\n", "flute length"),
         ("name,diameter [mm],flute length [mm],length [mm]\nA,12,x,83\n", "line 2"),
         ("name,diameter [mm],flute length [mm],length [mm]\n", "no row"),

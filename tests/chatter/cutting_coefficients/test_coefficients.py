@@ -223,3 +223,27 @@ def test_a_row_of_the_own_table_is_used_by_name(tmp_path):
     assert case.material.values["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.02)
     with pytest.raises(InputError, match='row "our steel" already'):
         chatter.coefficients(folder).keep_in(table, "our steel")
+
+
+def test_files_of_one_name_in_several_folders_are_runs_of_their_own(tmp_path):
+    folder = records(tmp_path, **UP_CUT)
+    text = (folder / "measurement.toml").read_text(encoding="utf-8")
+    for feed in FEEDS:
+        (folder / f"{feed}").mkdir()
+        (folder / f"feed_{feed}.csv").rename(folder / f"{feed}" / "forces.csv")
+        text = text.replace(f'"feed_{feed}.csv"', f'"{feed}/forces.csv"')
+    (folder / "measurement.toml").write_text(text, encoding="utf-8")
+    found = chatter.coefficients(folder)
+    assert [run.name for run in found.measurement.runs] == [f"{f}/forces.csv" for f in FEEDS]
+    assert in_si(found.summary())["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.02)
+
+
+def test_a_run_without_the_feed_that_the_others_state_is_told(tmp_path):
+    folder = records(tmp_path, **UP_CUT)
+    path = folder / "measurement.toml"
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace('feed_per_tooth = "0.09 mm"\n', ""), encoding="utf-8")
+    said = [note for note in chatter.coefficients(folder).notes if "states no feed" in note]
+    assert len(said) == 1
+    assert said[0].startswith("feed_0.09.csv:")
+    assert "0.05 mm a tooth" in said[0]
