@@ -1,5 +1,7 @@
 """Effects of the cutting force: edge force, chip exponent, process damping."""
 
+import math
+
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Values, free
 from chatter.explain.fitting import Parameter
@@ -9,6 +11,8 @@ from chatter.explain.measurement import Measurement
 _H0 = 1e-4
 #: tangential over radial process damping where the case has none
 _FRICTION = 0.3
+#: process damping that is little, N/m at the least, and as a share of Ktc V / omega
+_LEAST_USUAL_DAMPING, _USUAL_DAMPING = 5e4, 0.02
 
 
 class EdgeForce(Effect):
@@ -93,7 +97,7 @@ class ProcessDamping(Effect):
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """The coefficient."""
-        return [free("coefficient", 0.0, 5e4, "N/m", lower=0.0)]
+        return [free("coefficient", 0.0, _usual_damping(measurement.case), "N/m", lower=0.0)]
 
     def patch(self, case: Case, values: Values) -> Patch:
         """Process damping, with the friction that is declared."""
@@ -103,4 +107,21 @@ class ProcessDamping(Effect):
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """From none to much."""
-        return [{"coefficient": value} for value in (0.0, 5e4, 2e5, 8e5)]
+        usual = _usual_damping(measurement.case)
+        return [{"coefficient": factor * usual} for factor in (0.0, 1.0, 4.0, 16.0)]
+
+
+def _usual_damping(case: Case) -> float:
+    """Coefficient of a small process damping, N/m.
+
+    Its force over the amplitude is C b omega / V, that of the chip is Ktc b: what counts is in
+    proportion to Ktc V / omega, which is large where a heavy structure vibrates slowly.
+    """
+    material, cut, tool, structure = case.material, case.cut, case.tool, case.structure
+    modes = structure.mode if structure is not None else ()
+    Ktc = getattr(material, "Ktc", None)
+    if not modes or not Ktc or cut is None or tool is None:
+        return _LEAST_USUAL_DAMPING
+    omega = 2.0 * math.pi * min(mode.frequency for mode in modes)
+    speed = 0.5 * tool.diameter * cut.spindle_speed
+    return max(_LEAST_USUAL_DAMPING, _USUAL_DAMPING * Ktc * speed / omega)

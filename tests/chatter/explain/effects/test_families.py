@@ -9,7 +9,7 @@ import scipy.signal
 
 from chatter.compile.cutter import force_law, process_damping_of
 from chatter.description.case import loads
-from chatter.explain.effects.cutting_force import ChipExponent
+from chatter.explain.effects.cutting_force import ChipExponent, ProcessDamping
 from chatter.explain.effects.dynamometer import Dynamometer, DynamometerOfAxes, DynamometerOfTwo
 from chatter.explain.effects.effect_list import candidates
 from chatter.explain.effects.missing_mode import MissingMode
@@ -297,3 +297,24 @@ def test_frequencies_of_a_sensor_are_proposed_axis_by_axis():
         f"damping_{axis}_{k}": 0.03 for axis in "xy" for k in (1, 2)
     }}))  # fmt: skip
     assert sum(one.share for one in case.dynamometer.along("x")) == pytest.approx(1.0)
+
+
+def test_the_process_damping_of_a_heavy_slow_machine_is_known_as_well_as_that_of_a_light_one():
+    """At 700 rpm and 50 Hz 1e7 N/m is as usual as 1e5 N/m elsewhere; it is known to 8 percent."""
+    heavy = CASE.patch(
+        {
+            "tool.diameter": "50 mm",
+            "material.Ktc": "2200 MPa",
+            "cut.spindle_speed": "700 rpm",
+            "structure.mode[0].frequency": "50 Hz",
+        }
+    )
+    effect, true, deviation = ProcessDamping(), 1e7, 8e5
+    (own,) = effect.parameters(SimpleNamespace(case=heavy))
+    own = replace(own, name=f"{effect.name}.{own.name}")
+    found = fit([own], lambda values: (values - true) / deviation, np.zeros(1))
+    reported = parameters_of(found, effect)["coefficient"]
+    assert reported["value"] == pytest.approx(true, rel=0.02)
+    assert reported["ci95"] == pytest.approx(
+        [true - 1.96 * deviation, true + 1.96 * deviation], rel=0.03
+    )
