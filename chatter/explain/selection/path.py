@@ -90,6 +90,7 @@ def gone_on(begin: Path, stage: Stage, split: Split, progress: Progress) -> Path
         stages.append(stage)
         values = stage.best.fit.by_name
         problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
+        progress("fitting from other starting values", len(stages) / (MOST_EFFECTS + 1))
         now = fit_from_elsewhere(problem, problem.fit(split.fitted, values), split)
         path = Path(stages, problem, now)
         if len(stages) == MOST_EFFECTS or path.over_noise(split.holdout) < NO_RESIDUAL:
