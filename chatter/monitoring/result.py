@@ -11,7 +11,7 @@ from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.overload import NOTED, overloaded
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
-from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
+from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed, pulses_by_lines
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
@@ -140,6 +140,8 @@ class DetectedChatter(NotebookResult):
         revolution = self.evidence.revolution
         if self.refuting_speed is not None and self.given is not None:
             notes.append(in_words_of(self.refuting_speed, self.given, self.evidence.teeth))
+        if self.given is None and revolution is not None and revolution.source == "tacho":
+            notes.append(self._of_pulses(revolution.mean))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given
             if abs(ratio - 1.0) > _DIFFERS:
@@ -163,6 +165,18 @@ class DetectedChatter(NotebookResult):
         if self.advice is not None and self.evidence.teeth is None:
             notes.append("state --teeth for the speeds that the chatter frequency proposes")
         return notes
+
+    def _of_pulses(self, tacho: float) -> str:
+        """How many pulses a revolution the speed by a tacho, Hz, is read with."""
+        other = self.evidence.other_speed
+        said = f"{60.0 * tacho:.0f} rpm is the speed at one pulse of the tacho a revolution"
+        if other is None:
+            return f"{said}; where it gives more, state --spindle-speed"
+        pulses = pulses_by_lines(tacho, other.frequency)
+        return (
+            f"{said}, and does not fit the lines; they fit {pulses} pulses, or a multiple: state "
+            "--spindle-speed"
+        )
 
     def plot(self) -> Figure:
         """Spectrogram with verdicts, harmonics and chatter lines marked."""

@@ -38,7 +38,13 @@ from chatter.detection.spectral.spectra import (
     frames_of,
     mean_of,
 )
-from chatter.detection.spectral.stated_speed import REFUTED, LinesOfRecord, OtherSpeed
+from chatter.detection.spectral.stated_speed import (
+    FASTER,
+    REFUTED,
+    LinesOfRecord,
+    OtherSpeed,
+    pulses_by_lines,
+)
 
 Array = NDArray[np.float64]
 
@@ -279,7 +285,8 @@ def _with_speed(
         if found is not None:
             frames = _frames(recording, found.mean, _REVOLUTIONS)
             again = from_tacho(*pulses, frames, given)
-            return frames, again, None
+            several = None if given is not None else _of_several_pulses(recording, found, teeth)
+            return frames, again, several
     if given is not None:
         return frames, *_stated_speed(recording, frames, given, teeth)
     spacing = from_spectrum(frames, teeth)
@@ -288,6 +295,16 @@ def _with_speed(
     frames, long = _frames(recording, spacing, _REVOLUTIONS), _frames(recording, spacing, _LONG)
     revolution = about_given(long, frames, spacing, teeth or 1)
     return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
+
+
+def _of_several_pulses(
+    recording: Recording, tacho: Revolution, teeth: int | None
+) -> OtherSpeed | None:
+    """Speed that the lines speak for, with which a tacho has several pulses a revolution."""
+    other = LinesOfRecord(_frames(recording, tacho.mean, _LONG), tacho.mean, teeth).other_speed()
+    if other is None or other.relation == FASTER:
+        return None
+    return other if pulses_by_lines(tacho.mean, other.frequency) else None
 
 
 def _stated_speed(

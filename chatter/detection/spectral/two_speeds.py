@@ -18,6 +18,7 @@ from chatter.detection.spectral.frame_evidence import (
     evidence_at,
     share_on_harmonics,
 )
+from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
 from chatter.detection.spectral.segments import (
     CHATTER,
     IDLE,
@@ -131,11 +132,36 @@ def _of_two_speeds(evidence: Evidence, own: list[Segment]) -> list[Segment]:
             else one
             for fine, one in _together(finest, found)
         ]
+    own = _stable_as_read(evidence, own)
     pairs = _together(own, found)
     agree = all(
         one.verdict in (CHATTER, stated.verdict) or stated.verdict == IDLE for stated, one in pairs
     )
     return _joined(_of_pair(stated, one, evidence, agree) for stated, one in pairs)
+
+
+def _stable_as_read(evidence: Evidence, own: list[Segment]) -> list[Segment]:
+    """What is stable as stated, and not at the speed near it that the lines show, is not judged.
+
+    Lines one revolution apart, taken for those of the teeth of a slower spindle, speak for it; and
+    of a speed one per cent off, high harmonics lie on any chatter line.
+    """
+    stated, other = evidence.revolution.mean, evidence.other_speed
+    if abs(other.spacing / stated - 1.0) > ABOUT_GIVEN or STABLE not in {s.verdict for s in own}:
+        return own
+    read = segments_of(evidence_at(evidence.recording, stated, evidence.teeth))
+    return _joined(
+        _not_judged_as_read(one, near) if one.verdict == STABLE and near.verdict == CHATTER else one
+        for one, near in _together(own, read)
+    )
+
+
+def _not_judged_as_read(stated: Segment, near: Segment) -> Segment:
+    reason = (
+        f"{_verdict(near)} at {60.0 * near.spindle_frequency:.0f} rpm, the speed near the stated "
+        "one that the lines show, and stable at the stated one"
+    )
+    return replace(stated, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
 
 
 def _of_pair(stated: Segment, found: Segment, evidence: Evidence, agree: bool) -> Segment:
@@ -159,7 +185,8 @@ def _disagreeing(stated: Segment, found: Segment, evidence: Evidence) -> Segment
     was = evidence.revolution.mean
     reason = (
         f"{_verdict(found)} at {60.0 * other.frequency:.0f} rpm, which the lines speak for, and "
-        f"{_verdict(stated)} at {60.0 * was:.0f} rpm, as stated"
+        f"{_verdict(stated)} at {60.0 * was:.0f} rpm, "
+        + ("by the tacho" if evidence.revolution.source == "tacho" else "as stated")
     )
     return replace(
         stated, verdict=NOT_JUDGED, chatter_frequency=math.nan, bifurcation="none", confidence=0.0,

@@ -1,10 +1,18 @@
 """A spindle speed that is stated wrong: mistyped, an override, the record of another cut."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import chatter
+from chatter.detection.spectral import frame_evidence
+from chatter.detection.spectral.frame_evidence import evidence_at
 from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.revolution_frequency import stated_alone
+from chatter.detection.spectral.segments import segments_of
+from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
+from chatter.detection.spectral.two_speeds import judged
 from tests.chatter.detection.made_recordings import (
     RATE,
     chatter_line,
@@ -189,3 +197,23 @@ def test_chatter_in_a_short_record_is_found_at_a_speed_that_its_other_lines_conf
         found = detected(recording, revolution, teeth)
         assert found.verdict == verdict
         assert found.evidence.revolution.mean == pytest.approx(revolution, rel=2e-3)
+
+
+def test_a_wrong_speed_whose_harmonic_holds_the_chatter_is_not_stable():
+    """Lines one revolution apart, taken for those of the teeth, and chatter at order 32.57."""
+    rate, revolution, teeth = 10_000.0, 27.6, 6
+    time = np.arange(int(3.0 * rate)) / rate
+    angle = 2.0 * np.pi * revolution * time
+    values = sum(0.3 * np.cos(k * angle + k * k) for k in range(1, 25))
+    values = values + 2.0 * np.cos(32.57 * angle) * (1.0 + 0.6 * np.cos(teeth * angle))
+    values = values + 0.05 * np.random.default_rng(1).standard_normal(time.size)
+    recording = Recording("made", 1.0 / rate, ("a",), ("sound",), values[:, None])
+    right = evidence_at(recording, revolution, teeth)
+    stated = 0.987 * revolution  # its 33rd harmonic is the line of chatter
+    wrong = frame_evidence._with_lines(
+        recording, right.frames, stated_alone(right.frames, stated), teeth
+    )
+    other = OtherSpeed(revolution / teeth, revolution, REFUTED)
+    assert {one.verdict for one in segments_of(wrong)} == {"stable"}
+    verdicts = {one.verdict for one in judged(replace(wrong, other_speed=other))}
+    assert "stable" not in verdicts

@@ -337,3 +337,22 @@ def test_a_cell_that_is_no_number_is_named_by_line_and_column(tmp_path):
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(InputError, match="line 3, temperature: 'nan' is not a finite number"):
         chatter.detect(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("teeth", [4, None])
+def test_a_tacho_of_three_pulses_without_a_speed_is_told(teeth):
+    """Of a spindle at 50 Hz with four teeth: 150 Hz are not the revolution."""
+    time = clock(3.0)
+    angle = 2.0 * np.pi * 50.0 * time
+    cut = sum(np.cos(4 * k * angle + k) / (1 + abs(k - 3)) for k in range(1, 20))
+    runout = sum(0.15 * np.cos(k * angle + k) / (1 + k / 4) for k in range(1, 30))
+    values = cut + runout + 0.05 * np.random.default_rng(4).standard_normal(time.size)
+    tacho = (np.mod(150.0 * time, 1.0) < 0.3).astype(float)
+    recording = Recording(
+        "made", 1.0 / RATE, ("a",), ("acceleration",), values[:, None], 0.0, tacho
+    )
+    found = chatter.detect(recording, teeth=teeth)
+    assert any("pulse" in note and "--spindle-speed" in note for note in found.notes)
+    if teeth is not None:
+        assert found.verdict != "chatter"
+        assert any("3 pulses" in note for note in found.notes)
