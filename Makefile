@@ -17,12 +17,12 @@ test: $(VENV)/.installed-dev
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
-	$(BIN)/pytest -n auto --dist loadfile
+	$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder
 
 # every test, the nightly ones among them; what was found goes into docs/validation.md
 nightly: $(VENV)/.installed-dev
 	mkdir -p build/nightly
-	$(BIN)/pytest -n auto --dist loadfile -m 'not browser and not ansys' --junitxml build/nightly/tests.xml; \
+	$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder -m 'not browser and not ansys' --junitxml build/nightly/tests.xml; \
 		found=$$?; $(BIN)/python -m tests.nightly_record build/nightly/tests.xml && exit $$found
 
 # what takes hours: properties and damaged files in numbers, commands killed at random moments

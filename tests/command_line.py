@@ -1,7 +1,6 @@
 """The command line as tests call it."""
 
-from click.testing import Result
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from chatter.cli import program
 

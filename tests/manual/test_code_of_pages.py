@@ -8,7 +8,6 @@ import re
 import shlex
 from dataclasses import dataclass
 
-import click
 import pytest
 import tomlkit
 import typer
@@ -71,9 +70,9 @@ def test_commands_have_their_options(page):
         for name, *words in commands(block) if block.kind == "sh" else ():
             if name.startswith("-"):
                 continue
-            command = group.get_command(click.Context(group), name)
+            command = group.get_command(typer.Context(group), name)
             assert command is not None, f"chatter {name}"
-            context = click.Context(command, info_name=name)
+            context = typer.Context(command, info_name=name)
             command.make_parser(context).parse_args([word for word in words if word != "..."])
 
 
