@@ -82,9 +82,9 @@ def in_words(entry: dict[str, Any]) -> str:
     if not entry["worth_making"]:
         return (
             "no measurement within the limits is expected to say more "
-            f"(at most {entry['expected_information_bit']:.2g} bit)"
+            f"(expected information at most {entry['expected_information_bit']:.2g} bit)"
         )
     return (
         f"measure next: {entry['description']}, {entry['channel'].replace('_', ' ')}: it "
-        f"{question}, by {entry['expected_information_bit']:.2g} bit expected"
+        f"{question} (expected information {entry['expected_information_bit']:.2g} bit)"
     )

@@ -169,7 +169,7 @@ def _settled(
     stages = stages_of(case, time, signals, record.begins)
     description = (
         f"{stages.description(time)}; {rpm(speed):.6g} rpm "
-        f"{'by the tacho' if tacho else 'by what repeats'} "
+        f"{'by the tacho' if tacho else 'by the period of the signal'} "
         f"({100.0 * (speed / declared.cut.spindle_speed - 1.0):+.2f} %)"
     )
     cut_out = _cut_out(run, stages, names)
@@ -225,7 +225,7 @@ def _without_unsteady(settled: Sequence[_Settled]) -> tuple[list[_Settled], list
             words = f"{100.0 * unsteady:.0f} % of the signal does not repeat with the revolution"
             others = f"{100.0 * typical:.1f} %: the cut chatters or has not settled"
         elif drifting > max(_DRIFTING, _MORE_UNSTEADY * drift):
-            words = f"{100.0 * drifting:.0f} % of the signal changes over what repeats best"
+            words = f"{100.0 * drifting:.0f} % of the signal drifts from period to period"
             others = f"{100.0 * drift:.1f} %: the cut has not settled or beats"
         else:
             kept.append(one)

@@ -421,4 +421,4 @@ def test_notes_tell_the_stages(case, cut_off, tmp_path):
     record = RecordDescription("cut", "unknown", 0.005)
     usable = checked(measurement(case, cut_off, tmp_path, as_in_the_case, record))
     told = [one.description for one in usable.findings if one.severity == NOTE]
-    assert any("settled from" in one and "rpm by what repeats" in one for one in told)
+    assert any("settled from" in one and "rpm by the period of the signal" in one for one in told)
