@@ -110,6 +110,8 @@ def _of_time() -> Iterator[Question]:
         "helical edge": _HELIX,
         "exponential law": _HELIX | _EXPONENTIAL,
         "viscous process damping": _VISCOUS,
+        # what `explain` tries together
+        "exponential law, viscous process damping": _HELIX | _EXPONENTIAL | _VISCOUS,
         "ploughing of a worn flank": _PLOUGHING,
         "varying spindle speed": _VARYING,
         "contact": _CONTACT,
