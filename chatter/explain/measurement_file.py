@@ -171,7 +171,7 @@ def _of_one_kind(
             _run(path, whole.kind, number, entry, whole.case)
             for number, entry in enumerate(entries, start=1)
         )
-        runs = _told_apart(runs, [Path(entry["file"]) for entry in entries])
+        runs = _distinguished(runs, [Path(entry["file"]) for entry in entries])
     if not runs:
         raise InputError(f"{path}: {where}there is no [[run]]")
     _refuse_names_twice(path, runs)
@@ -203,7 +203,7 @@ def _content(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: is no TOML file: {error}") from error
 
 
-def _told_apart(runs: tuple[Run, ...], files: Sequence[Path]) -> tuple[Run, ...]:
+def _distinguished(runs: tuple[Run, ...], files: Sequence[Path]) -> tuple[Run, ...]:
     """Runs of files of one name in several folders, with the folders in their names."""
     return tuple(
         replace(run, name=f"{file.as_posix()}{run.name.removeprefix(file.name)}")
