@@ -12,6 +12,7 @@ from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.description.errors import InputError
 from chatter.description.formatting import to_digits
 from chatter.description.units import QuantityError, parse
@@ -105,7 +106,8 @@ def _print_coefficients(found: Coefficients) -> None:
         [_of_exponent(one["of"]), f"{one['value']:.3f}", to_digits(one["standard_deviation"]), ""]
         for one in summary["exponents"]
     ]
-    title = f"{summary['law']} law, {summary['from']} of {len(found.measurement.runs)} cuts"
+    cuts = number_of_cuts(len(found.measurement.runs))
+    title = f"{summary['law']} law, {summary['from']} of {cuts}"
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
     if summary["from"] == "mean forces" and summary["holdout_error"]:
         for place, error in found.worst_means().items():
@@ -170,7 +172,7 @@ def _print_waveforms(summary: dict[str, Any], shown: str) -> None:
     numbers = [one for key in keys for one in summary[key]]
     if numbers:
         print_table(
-            f"{summary['law']} law, whole waveforms of {len(summary['cuts'])} cuts",
+            f"{summary['law']} law, whole waveforms of {number_of_cuts(len(summary['cuts']))}",
             ["number", "value", "+-", "unit"],
             [
                 [

@@ -166,7 +166,7 @@ def _print_detection(found: DetectedChatter) -> None:
         for one in found.summary()["segments"]
     ]
     print_table(
-        f"{found.recording.name}: {found.verdict}",
+        f"{found.recording.name}: {found.headline}",
         ["time [s]", "verdict", "chatter [Hz]", "bifurcation", "confidence"],
         rows,
     )

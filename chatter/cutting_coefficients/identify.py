@@ -12,6 +12,7 @@ from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
 from chatter.cutting_coefficients.in_the_cut import in_the_cut
 from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw, of_directions
 from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
+from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.cutting_coefficients.records_of_cuts import read_records
 from chatter.cutting_coefficients.result import Coefficients
 from chatter.cutting_coefficients.varied_cut import with_parts
@@ -76,8 +77,8 @@ def coefficients(
     fits = _fitted(of_directions(LAWS, directions), means, cases)
     if not fits:
         raise InputError(
-            f"{records.folder}: {len(means)} mean forces of {len(cases)} cuts determine no force "
-            "law; forces along x and y of one cut are the least"
+            f"{records.folder}: {len(means)} mean forces of {number_of_cuts(len(cases))} determine "
+            "no force law; forces along x and y of one cut are the least"
         )
     errors = [_holdout(fit, means, cases) for fit in fits]
     best = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))

@@ -16,6 +16,7 @@ from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import DIRECTION_NAMES
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
+from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.cutting_coefficients.oblique_fit import ObliqueFit, oblique_fit
 from chatter.cutting_coefficients.own_table import add_row
 from chatter.cutting_coefficients.predicted_cuts import each_by_the_others, of_measurement
@@ -428,8 +429,8 @@ class Coefficients(NotebookResult):
         for key, value in self._row().items():
             section.add(key, value)
         document = tomlkit.document()
-        runs = len(self.measurement.runs)
-        document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {runs} cuts"))
+        cuts = number_of_cuts(len(self.measurement.runs))
+        document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {cuts}"))
         if self.linear_law_holds is False and self.kept.law.law == "linear":
             document.add(tomlkit.comment("the linear law leaves more than the readings scatter"))
         document.add("material", section)
@@ -466,7 +467,8 @@ class Coefficients(NotebookResult):
             )
         case = self.measurement.case
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
-        source = f"{self.origin} of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
+        folder = self.measurement.folder.resolve().name
+        source = f"{self.origin} of {number_of_cuts(len(feeds))}, {folder}"
         validity = f"feeds of {1e3 * min(feeds):.4g} to {1e3 * max(feeds):.4g} mm a tooth"
         return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 

@@ -15,6 +15,7 @@ from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import LAWS, REFERENCE_CHIP
 from chatter.cutting_coefficients.mean_forces import force_channels
+from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.cutting_coefficients.prediction import PredictedCut, compared
 from chatter.cutting_coefficients.revolution_average import RevolutionAverage, revolution_average
 from chatter.cutting_coefficients.waveform_choice import waveform_fits
@@ -220,9 +221,8 @@ class Waveforms:
         for key, value in self.row().items():
             section.add(key, value)
         document = tomlkit.document()
-        document.add(
-            tomlkit.comment(f"{fit.model.law.name} law, waveforms of {len(fit.averages)} cuts")
-        )
+        cuts = number_of_cuts(len(fit.averages))
+        document.add(tomlkit.comment(f"{fit.model.law.name} law, waveforms of {cuts}"))
         for note in self.notes:
             document.add(tomlkit.comment(note))
         document.add("material", section)

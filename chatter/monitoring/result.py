@@ -10,11 +10,13 @@ from chatter.description.case import Case
 from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.overload import NOTED, overloaded
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
+from chatter.detection.spectral.segments import Segment
 from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed, pulses_by_lines
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
+from chatter.monitoring.overall_verdict import durations_of, verdict_of
+from chatter.monitoring.overall_verdict import in_words as verdict_in_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,13 +79,17 @@ class DetectedChatter(NotebookResult):
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
-        return f"<DetectedChatter {self.recording.name!r}, {self.verdict}>"
+        return f"<DetectedChatter {self.recording.name!r}, {self.headline}>"
 
     @property
     def verdict(self) -> str:
         """Of the recording: that of its segments which matters most."""
-        found = {one.verdict for one in self.segments}
-        return next(one for one in (CHATTER, STABLE, NOT_JUDGED, IDLE) if one in found)
+        return verdict_of(self.segments)
+
+    @property
+    def headline(self) -> str:
+        """The verdict, and for how long each verdict holds."""
+        return verdict_in_words(self.segments)
 
     @property
     def chatter_frequency(self) -> float | None:
@@ -98,6 +104,7 @@ class DetectedChatter(NotebookResult):
             "channels": list(self.recording.channels),
             "duration_s": self.recording.duration,
             "verdict": self.verdict,
+            "verdict_durations_s": durations_of(self.segments),
             "chatter_frequency_Hz": self.chatter_frequency,
             "spindle_speed_rpm": None if revolution is None else 60.0 * revolution.mean,
             "spindle_speed_source": None if revolution is None else revolution.source,

@@ -44,9 +44,9 @@ def plot_detection(found: DetectedChatter) -> Figure:
 
 def _title(found: DetectedChatter) -> str:
     name = found.recording.name.replace("\\", "/").rpartition("/")[2]
-    words = f"{name}: {found.verdict}"
+    words = f"{name}: {found.headline}"
     if found.chatter_frequency is not None:
-        words += f" at {found.chatter_frequency:.1f} Hz"
+        words += f", at {found.chatter_frequency:.1f} Hz"
     if found.evidence.revolution is not None:
         words += f", {60.0 * found.evidence.revolution.mean:.0f} rpm"
     if found.refuting_speed is not None:

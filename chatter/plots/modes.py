@@ -36,7 +36,8 @@ def plot_fit(fit: ModalFit, title: str) -> Figure:
             fontsize=9,
         )
     shown = "" if columns == len(fit.frfs) else f" (first {columns} of {len(fit.frfs)} FRFs)"
-    figure.suptitle(f"{title}: {len(fit.identified)} modes{shown}", fontsize=12)
+    count = len(fit.identified)
+    figure.suptitle(f"{title}: {count} mode{'s'[: count != 1]}{shown}", fontsize=12)
     return figure
 
 

@@ -247,3 +247,10 @@ def test_a_run_without_the_feed_that_the_others_state_is_told(tmp_path):
     assert len(said) == 1
     assert said[0].startswith("feed_0.09.csv:")
     assert "0.05 mm a tooth" in said[0]
+
+
+def test_one_cut_is_written_as_one(tmp_path):
+    folder = records(tmp_path, **UP_CUT, feeds=(0.06,))
+    shown = chatter_command("coefficients", folder, "--mean-forces", "--out", tmp_path / "out")
+    assert "of 1 cut\n" in shown.stdout
+    assert "of 1 cut\n" in (tmp_path / "out" / "material.toml").read_text(encoding="utf-8")
