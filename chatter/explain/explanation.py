@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from chatter.description.case import Case
 from chatter.description.given_path import path_given
 from chatter.description.whole_files import write_whole
+from chatter.explain.blas_threads import one_blas_thread
 from chatter.explain.checking import checked
 from chatter.explain.contradiction import Contradiction
 from chatter.explain.criteria import MOST_PROBABLE, MOST_PROBABLE_BESIDE_UNKNOWN, OUT_OF_TOLERANCE
@@ -116,6 +117,7 @@ class Explanation(NotebookResult):
             cases[REPAIRED] = self.found.problem.case(self.found.of_fitted.by_name)
         return cases
 
+    @one_blas_thread()
     def summary(self) -> dict[str, Any]:
         """Content of explanation.json."""
         return self._summary
@@ -326,6 +328,7 @@ class Explanation(NotebookResult):
         """Picture of the residuals of some runs, before and after."""
         return presentation("plots.explanation").plot_explanation(self)
 
+    @one_blas_thread()
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.json, report.html, residual.png and case-updated.toml."""
         with ThreadPoolExecutor(max_workers=1) as beside:
@@ -343,6 +346,7 @@ class Explanation(NotebookResult):
         return [*written, residuals, case]
 
 
+@one_blas_thread()
 def explain(
     measurement: str | Path | Measurement,
     case: str | Path | Case | None = None,
