@@ -10,8 +10,10 @@ from chatter.description.case import Case
 from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.overload import NOTED, overloaded
 from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.revolution_frequency import Revolution
 from chatter.detection.spectral.segments import Segment
-from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed, pulses_by_lines
+from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
+from chatter.detection.spectral.two_speeds import pulses_in_words
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
@@ -148,7 +150,7 @@ class DetectedChatter(NotebookResult):
         if self.refuting_speed is not None and self.given is not None:
             notes.append(in_words_of(self.refuting_speed, self.given, self.evidence.teeth))
         if self.given is None and revolution is not None and revolution.source == "tacho":
-            notes.append(self._of_pulses(revolution.mean))
+            notes.append(self._of_pulses(revolution))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given
             if abs(ratio - 1.0) > _DIFFERS:
@@ -173,17 +175,21 @@ class DetectedChatter(NotebookResult):
             notes.append("state --teeth for the speeds that the chatter frequency proposes")
         return notes
 
-    def _of_pulses(self, tacho: float) -> str:
-        """How many pulses a revolution the speed by a tacho, Hz, is read with."""
-        other = self.evidence.other_speed
-        said = f"{60.0 * tacho:.0f} rpm is the speed at one pulse of the tacho a revolution"
-        if other is None:
-            return f"{said}; where it gives more, state --spindle-speed"
-        pulses = pulses_by_lines(tacho, other.frequency)
-        return (
-            f"{said}, and does not fit the lines; they fit {pulses} pulses, or a multiple: state "
-            "--spindle-speed"
+    def _of_pulses(self, revolution: Revolution) -> str:
+        """How many pulses a revolution the speed by a tacho is read with."""
+        other, pulses = self.evidence.other_speed, pulses_in_words(revolution.pulses)
+        said = (
+            f"{60.0 * revolution.mean:.0f} rpm is the speed at {pulses} of the tacho a revolution"
         )
+        if other is not None:
+            several = round(revolution.pulses * revolution.mean / other.frequency)
+            return (
+                f"{said}; its lines fit {60.0 * other.frequency:.0f} rpm too, at {several}: state "
+                "--spindle-speed"
+            )
+        if revolution.may_have_more_pulses:
+            return f"{said}; where it gives more, state --spindle-speed"
+        return f"{said}, which its lines show; where it gives another number, state --spindle-speed"
 
     def plot(self) -> Figure:
         """Spectrogram with verdicts, harmonics and chatter lines marked."""
@@ -217,5 +223,5 @@ def _if_alike(other: OtherSpeed, teeth: int | None) -> str:
     return f", which may also be {' or '.join(rest)} rpm where some of its {teeth} teeth are alike"
 
 
-def _by(revolution) -> str:
+def _by(revolution: Revolution) -> str:
     return "tacho" if revolution.source == "tacho" else "spacing of its lines"

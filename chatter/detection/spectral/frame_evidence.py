@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +25,7 @@ from chatter.detection.spectral.chatter_lines import (
 )
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
+    FASTEST,
     PLAUSIBLE,
     Revolution,
     about_given,
@@ -38,13 +41,8 @@ from chatter.detection.spectral.spectra import (
     frames_of,
     mean_of,
 )
-from chatter.detection.spectral.stated_speed import (
-    FASTER,
-    REFUTED,
-    LinesOfRecord,
-    OtherSpeed,
-    pulses_by_lines,
-)
+from chatter.detection.spectral.stated_speed import REFUTED, SLOWER, LinesOfRecord, OtherSpeed
+from chatter.detection.spectral.tacho_pulses import MOST_PULSES, pulses_by_lines
 
 Array = NDArray[np.float64]
 
@@ -280,13 +278,9 @@ def _with_speed(
         length = min(_UNKNOWN, recording.duration)
         frames = frames_of(recording, length, max(_HOP * length, recording.duration / _MOST_FRAMES))
     if recording.tacho is not None:
-        pulses = recording.tacho, recording.time_step, recording.start
-        found = from_tacho(*pulses, frames, given)
-        if found is not None:
-            frames = _frames(recording, found.mean, _REVOLUTIONS)
-            again = from_tacho(*pulses, frames, given)
-            several = None if given is not None else _of_several_pulses(recording, found, teeth)
-            return frames, again, several
+        by_tacho = _by_tacho(recording, frames, given)
+        if by_tacho is not None:
+            return by_tacho
     if given is not None:
         return frames, *_stated_speed(recording, frames, given, teeth)
     spacing = from_spectrum(frames, teeth)
@@ -297,14 +291,36 @@ def _with_speed(
     return frames, revolution._replace(source="spectrum", may_be_multiple=True), None
 
 
-def _of_several_pulses(
-    recording: Recording, tacho: Revolution, teeth: int | None
-) -> OtherSpeed | None:
-    """Speed that the lines speak for, with which a tacho has several pulses a revolution."""
-    other = LinesOfRecord(_frames(recording, tacho.mean, _LONG), tacho.mean, teeth).other_speed()
-    if other is None or other.relation == FASTER:
-        return None
-    return other if pulses_by_lines(tacho.mean, other.frequency) else None
+def _by_tacho(
+    recording: Recording, frames: Frames, given: float | None
+) -> tuple[Frames, Revolution, OtherSpeed | None] | None:
+    """The same by a tacho; None where it has no pulses of a spindle.
+
+    Without a speed that is given, Hz, the lines tell how many pulses it has a revolution.
+    """
+
+    def read(frames: Frames) -> Revolution | None:
+        return from_tacho(recording.tacho, recording.time_step, recording.start, frames, given)
+
+    found = read(frames)
+    if found is None or given is not None:
+        return None if found is None else (*_read_over(recording, found, read), None)
+    long = _frames(recording, found.mean / MOST_PULSES, _LONG)
+    count, least = pulses_by_lines(long, read(long).frequency)
+    slowest = found.with_pulses(count)
+    chosen = found.with_pulses(max(least, math.ceil(found.mean / FASTEST)))
+    frames, revolution = _read_over(recording, chosen, read)
+    other = OtherSpeed(slowest.mean, slowest.mean, SLOWER)
+    revolution = revolution._replace(may_have_more_pulses=count == 1)
+    return frames, revolution, other if count > chosen.pulses else None
+
+
+def _read_over(
+    recording: Recording, found: Revolution, read: Callable[[Frames], Revolution | None]
+) -> tuple[Frames, Revolution]:
+    """Frames of so many revolutions, and the speed by the tacho over them."""
+    frames = _frames(recording, found.mean, _REVOLUTIONS)
+    return frames, read(frames).with_pulses(found.pulses)
 
 
 def _stated_speed(

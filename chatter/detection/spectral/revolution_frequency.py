@@ -16,6 +16,7 @@ from chatter.detection.spectral.chatter_lines import (
     strongest_line,
 )
 from chatter.detection.spectral.spectra import Frames, mean_of
+from chatter.detection.spectral.tacho_pulses import MOST_PULSES
 
 Array = NDArray[np.float64]
 
@@ -91,6 +92,16 @@ class Revolution(NamedTuple):
     mean: float  # Hz, over the recording
     #: of the spectrum alone: the spacing of lines may be that of several teeth
     may_be_multiple: bool = False
+    #: of a tacho: pulses a revolution, and whether it may have more, of which no lines tell
+    pulses: int = 1
+    may_have_more_pulses: bool = False
+
+    def with_pulses(self, pulses: int) -> Revolution:
+        """The same pulses of a tacho, so many of them a revolution."""
+        factor = self.pulses / pulses
+        return self._replace(
+            frequency=self.frequency * factor, mean=self.mean * factor, pulses=pulses
+        )
 
 
 #: standard deviations from which a spacing is believed, alone and beside a given speed
@@ -108,10 +119,10 @@ _LARGE, _LINE, _SPACING = 0.1, 0.2, 1.5e-4
 #: pulses that tell what is usual near one, relative difference of a period that misses one, and of
 #: neighbours of a spindle that turns; share of the periods that are as they should be
 _NEARBY, _MISSING, _STEADY, _MOST = 9, 0.25, 0.05, 0.6
-#: difference of a number of pulses a revolution from a whole one, and most that are distinguished
-_WHOLE, _MOST_PULSES = 0.25, 8
+#: difference of a number of pulses a revolution from a whole one
+_WHOLE = 0.25
 #: lowest and highest frequency of a spindle, Hz
-_SLOWEST, _FASTEST = 3.0, 700.0
+_SLOWEST, FASTEST = 3.0, 700.0
 
 
 def about_given(long: Frames, frames: Frames, given: float, teeth: int) -> Revolution:
@@ -171,7 +182,7 @@ def from_spectrum(frames: Frames, teeth: int | None) -> float | None:
     """
     everywhere = line_autocorrelations(frames).sum(axis=0)
     slowest = slowest_of(frames)
-    found = best_spacing(everywhere, frames.step, slowest, _FASTEST, 1)
+    found = best_spacing(everywhere, frames.step, slowest, FASTEST, 1)
     if not found.significance > CERTAIN:
         return None
     most = MOST_TEETH if teeth is None else max(teeth, 1)
@@ -261,13 +272,13 @@ def from_tacho(
     pulses = _pulses(float(frequency.mean()), given)
     frequency = frequency / pulses
     mean = 1.0 / float(np.mean(1.0 / frequency))
-    if pulses > _MOST_PULSES or mean > _FASTEST:
+    if pulses > MOST_PULSES or mean > (FASTEST if given is not None else MOST_PULSES * FASTEST):
         return None
     over = [
         1.0 / np.mean(1.0 / frequency[near]) if near.any() else mean
         for near in (np.abs(middle - t) <= 0.5 * frames.length for t in frames.time)
     ]
-    return Revolution(np.array(over), _BY_TACHO, "tacho", mean)
+    return Revolution(np.array(over), _BY_TACHO, "tacho", mean, pulses=pulses)
 
 
 def _rising_edges(tacho: Array, time_step: float, start: float) -> Array:

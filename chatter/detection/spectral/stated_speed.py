@@ -83,18 +83,6 @@ class OtherSpeed(NamedTuple):
     relation: str  # `REFUTED`, `FASTER` or `SLOWER`
 
 
-def pulses_by_lines(tacho: float, lines: float) -> int:
-    """Pulses a revolution, 2 to 8, with which a tacho and the lines, Hz, fit; 0 where none do.
-
-    The lines may be those of the revolution or of several teeth.
-    """
-    for pulses in _PARTS:
-        teeth = pulses * lines / tacho
-        if round(teeth) and abs(teeth / round(teeth) - 1.0) < _SAME:
-            return pulses
-    return 0
-
-
 class LinesOfRecord:
     """What the lines of a recording say of its speed.
 

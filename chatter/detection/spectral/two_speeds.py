@@ -12,15 +12,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from chatter.detection.spectral.chatter_lines import LOWEST_ORDER
 from chatter.detection.spectral.frame_evidence import (
     Evidence,
     cut_confirms_speed,
     evidence_at,
     share_on_harmonics,
 )
-from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
+from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN, Revolution
 from chatter.detection.spectral.segments import (
     CHATTER,
+    GOES_ON,
     IDLE,
     NOT_JUDGED,
     STABLE,
@@ -51,7 +53,7 @@ def judged(evidence: Evidence) -> list[Segment]:
         own = [_supported(one, evidence) for one in own]
     other = evidence.other_speed
     if other is None:
-        return own
+        return [_below_tacho(one, evidence) for one in own]
     if other.relation == REFUTED:
         return _of_two_speeds(evidence, own)
     if other.relation == FASTER and CHATTER in {one.verdict for one in own}:
@@ -85,6 +87,35 @@ def _supported(segment: Segment, evidence: Evidence) -> Segment:
     return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
 
 
+def _below_tacho(segment: Segment, evidence: Evidence) -> Segment:
+    """Not judged where a large line is too low to be searched, of a tacho whose pulses are unknown.
+
+    With several pulses a revolution it may be a harmonic of the spindle, or chatter.
+    """
+    if segment.verdict not in (STABLE, IDLE) or not evidence.revolution.may_have_more_pulses:
+        return segment
+    frames = evidence.frames
+    rows = (frames.time >= segment.begin) & (frames.time <= segment.end)
+    power = frames.power[rows].mean(axis=0) if rows.any() else frames.power.mean(axis=0)
+    comb = evidence.comb(frames.time.size // 2)
+    low = (frames.frequency < LOWEST_ORDER * comb.revolution) & comb.off(frames.frequency)
+    strongest = int(np.argmax(np.where(low, power, 0.0)))
+    line = float(frames.frequency[strongest])
+    near = low & (np.abs(frames.frequency - line) < comb.half_width)
+    if power[near].sum() < GOES_ON * power.sum():
+        return segment
+    reason = (
+        f"a line at {line:.1f} Hz is no harmonic of {60.0 * comb.revolution:.0f} rpm, the speed "
+        f"{_said_by(evidence.revolution)}"
+    )
+    return replace(segment, verdict=NOT_JUDGED, confidence=0.0, reason=reason)
+
+
+def pulses_in_words(count: int) -> str:
+    """Return ``"one pulse"``, ``"3 pulses"``."""
+    return "one pulse" if count == 1 else f"{count} pulses"
+
+
 def _unconfirmed(segment: Segment) -> str:
     return (
         f"no spacing of lines confirms {60.0 * segment.spindle_frequency:.0f} rpm, and a line of "
@@ -105,6 +136,9 @@ def _stable_at_both(evidence: Evidence, own: list[Segment], faster: list[Segment
 
 def _maybe_of_slower(stated: Segment, slower: Segment, evidence: Evidence) -> Segment:
     """Chatter that a slower spindle makes a cut without it is not certain."""
+    if evidence.revolution.source == "tacho":  # which has this speed or that: neither is likelier
+        is_same = stated.verdict == slower.verdict
+        return slower if is_same else _disagreeing(stated, slower, evidence)
     if stated.verdict == slower.verdict or stated.verdict == NOT_JUDGED:
         return stated
     if stated.verdict != CHATTER:
@@ -185,13 +219,20 @@ def _disagreeing(stated: Segment, found: Segment, evidence: Evidence) -> Segment
     was = evidence.revolution.mean
     reason = (
         f"{_verdict(found)} at {60.0 * other.frequency:.0f} rpm, which the lines speak for, and "
-        f"{_verdict(stated)} at {60.0 * was:.0f} rpm, "
-        + ("by the tacho" if evidence.revolution.source == "tacho" else "as stated")
+        f"{_verdict(stated)} at {60.0 * was:.0f} rpm, " + _said_by(evidence.revolution)
     )
     return replace(
         stated, verdict=NOT_JUDGED, chatter_frequency=math.nan, bifurcation="none", confidence=0.0,
         reason=reason,
     )  # fmt: skip
+
+
+def _said_by(revolution: Revolution) -> str:
+    if revolution.source != "tacho":
+        return "as stated"
+    return (
+        f"by {pulses_in_words(revolution.pulses)} of the tacho a revolution: state --spindle-speed"
+    )
 
 
 def _verdict(segment: Segment) -> str:
