@@ -218,18 +218,31 @@ def _in_other_forms(path: Path, split: Split, forms_of: Forms, progress: Progres
         without = path.problem.without_effect(effect)
         before = without.fit(split.fitted, path.now.by_name)
         own = fitted(without, effect, split, path.now.by_name)
-        steps = _steps(without, before, split.fitted, others)
-        if not steps:
-            continue
-        one, step = min(steps, key=lambda entry: entry[1].cost)
-        member = fitted(without, one, split, step.values)
-        if member.evidence - own.evidence < LEAST_EVIDENCE or member.holdout > own.holdout:
+        member = _better_member(without, before, own, others, split)
+        if member is None:
             continue
         found = stage_with(without, before, split, [member, own])
         problem = without.with_effect(member.effect).with_noise_beside(member.fit.by_name)
         now = problem.fit(split.fitted, member.fit.by_name)
         path = Path([*path.stages[:index], found, *path.stages[index + 1 :]], problem, now)
     return path
+
+
+def _better_member(
+    without: Problem, before: Fit, own: Candidate, others: Sequence[Effect], split: Split
+) -> Candidate | None:
+    """First other member of a family that does better than the one added; None where none does.
+
+    In the order of what linearised steps gain: one that gains most of the runs fitted may predict
+    the holdout runs worse, where another predicts them better.
+    """
+    steps = _steps(without, before, split.fitted, others)
+    for one, step in sorted(steps, key=lambda entry: entry[1].cost):
+        member = fitted(without, one, split, step.values)
+        gain = member.evidence - own.evidence
+        if gain >= LEAST_EVIDENCE and member.holdout <= own.holdout:
+            return member
+    return None
 
 
 def instead_of_two(path: Path, split: Split, progress: Progress) -> Path:
