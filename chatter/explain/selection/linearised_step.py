@@ -21,6 +21,8 @@ _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
 _KEPT_PROMISE = 0.5
 #: starts with the declared values put back of which a linearised step is made
 _SIZABLE_STARTS = 3
+#: rms of a change, over the noise, that is none: rounding, and where a record lies beside it
+_NO_CHANGE = 1e-3
 #: standard deviations by which a declared value is drawn where a mode may stand beside another
 _DRAWN = 2.0
 #: weight of a linearised step on parameters without a prior, which keeps it finite
@@ -188,15 +190,11 @@ class _Secants:
 
     def _directions(self, values: Mapping[str, float]) -> NDArray[np.float64]:
         """Changes of the residuals (n, k) by an effect: by all of it, or by each of its amounts."""
-        secant = self.trial.residuals(values, self.runs) - self.now.residuals
-        if np.any(secant) or not self.amounts:
+        there = self.trial.residuals(values, self.runs)
+        secant = there - self.now.residuals
+        if float(np.sqrt(np.mean(secant**2))) > _NO_CHANGE or not self.amounts:
             return secant[:, None]
-        changes = []
-        for one in self.amounts:
-            moved = {**values, one.name: one.moved(values[one.name], _DIFFERENCE)}
-            change = self.trial.residuals(moved, self.runs) - self.now.residuals
-            changes.append(change / _DIFFERENCE)
-        return np.column_stack(changes)
+        return _columns(self.trial, self.amounts, values, there, self.runs)
 
 
 def _promised(

@@ -401,3 +401,27 @@ def test_the_cut_nearest_to_its_limit_is_fitted():
     assert held_out(settling_within(6, 12, 6, 6, 6, 18)) == ["52", "54"]
     # another that is fitted asks for as much
     assert held_out(settling_within(40, 6, 40, 6, 6, 6)) == ["52", "55"]
+
+
+class Lower(Offset):
+    """The offset as what a number falls short of one, which is its highest value."""
+
+    def parameters(self, measurement):
+        return [free("share", 1.0, 0.03, "", lower=0.0, upper=1.0)]
+
+    def nothing(self, measurement):
+        return {"share": 1.0}
+
+    def patch(self, case, values):
+        return {"axis.offset": 10.0 * (1.0 - float(values["share"]))}
+
+
+def test_effects_that_begin_at_nothing_promise_what_they_do_beside_rounding_and_at_a_bound():
+    """Coarse predictions are corrected, so that no effect leaves a residual that is not the same."""
+    problem, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0)))
+    now = problem.fit(split.fitted, {})
+    rounding = 1e-13 * np.random.default_rng(5).standard_normal(SAMPLES)
+    coarse = replace(problem, correction={run.name: rounding for run in split.fitted})
+    for effect in (Offset(), Lower()):
+        promised = promised_by_secants(coarse, effect, now, split.fitted)
+        assert promised == pytest.approx(9.0 * len(split.fitted) * SAMPLES, rel=0.03)
