@@ -21,7 +21,14 @@ from benchmarks.blind_sets.files import (
     write_toml,
 )
 from benchmarks.blind_sets.machines import tool_table
-from benchmarks.blind_sets.milling import Set, conditions_of, draw_set, effects_of
+from benchmarks.blind_sets.milling import (
+    SEEN,
+    CannotDrawError,
+    Set,
+    conditions_of,
+    draw_set,
+    effects_of,
+)
 from benchmarks.blind_sets.milling_effects import UNLISTED, Rng
 from benchmarks.blind_sets.milling_physics import TURN, Array, Cut, Plant, run
 
@@ -38,6 +45,7 @@ _OFFSET, _DRIFT = 0.05, 0.03
 #: noise of forces, of accelerations and displacements, and of the tacho, as shares
 _NOISE = (0.004, 0.012)
 _TACHO, _PULSE, _TACHO_NOISE = 5.0, 0.04, 0.03
+_MOST_TRIES = 20
 
 
 class _Rig(NamedTuple):
@@ -67,8 +75,7 @@ def _drawn_rig(rng: Rng) -> _Rig:
 def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list[str]:
     """Draw a set, record it and write it; returns the names of its effects."""
     names = effects_of(rng, number, only)
-    drawn = draw_set(rng, names)
-    rig = _drawn_rig(rng)
+    drawn, rig = _drawn_and_recorded(rng, names)
     place, truth = folders(out, number)
     entries = []
     for index, cut in enumerate(drawn.cuts[:8]):
@@ -102,6 +109,16 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
         },
     )
     return names
+
+
+def _drawn_and_recorded(rng: Rng, names: list[str]) -> tuple[Set, _Rig]:
+    """A set and how it is recorded: each effect is seen in what is recorded."""
+    for _ in range(_MOST_TRIES):
+        drawn, rig = draw_set(rng, names), _drawn_rig(rng)
+        channels = 4 if rig.motion else 2  # forces, then displacements
+        if all(max(sizes[:channels]) >= SEEN for sizes in drawn.sizes.values()):
+            return drawn, rig
+    raise CannotDrawError(f"{' and '.join(names)} is not seen in the channels recorded")
 
 
 def _case(rng: Rng, title: str, drawn: Set, first: dict[str, str]) -> dict[str, Any]:
