@@ -24,7 +24,7 @@ from benchmarks.contradictions.drawing.quantities import happens, log_uniform, n
 from benchmarks.contradictions.drawing.tool import radius_of
 from benchmarks.contradictions.numbers import critical_depths
 from chatter.description.case import Case
-from chatter.stability.forced_vibration import notes_on_steady_cut
+from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.methods.time_domain.critical_depths import growths
 from chatter.stability.model import milling_model
 from chatter.stability.registry import METHODS
@@ -109,9 +109,8 @@ def compare_growth(document: Document, method: str) -> list[Comparison]:
     if not math.isfinite(limit):
         raise PremiseFailsError("there is no limit down to the maximum axial depth searched")
     at_limit = milling_model(case.patch({"cut.axial_depth": limit}))
-    for note in notes_on_steady_cut(at_limit, METHODS[method]):
-        if "may differ" in note:
-            raise PremiseFailsError(note)
+    for effect in neglected_in_steady_cut(at_limit, METHODS[method]):
+        raise PremiseFailsError(effect.note or effect.because)
     depths = limit * np.array(_SHARES)
     speeds = np.full(len(_SHARES), case.cut.spindle_speed)
     found = []
