@@ -7,16 +7,22 @@ BIN    := $(VENV)/bin
 # start anew read compiled modules
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test nightly campaigns lowest manual distributions benchmarks clean
+.PHONY: demo test rules tests nightly campaigns lowest manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
 	$(BIN)/chatter examples flexible-workpiece --run --open --out demo-output
 
+# the rules beside the tests: they take one processor alone
 test: $(VENV)/.installed-dev
+	$(MAKE) --no-print-directory --jobs 2 rules tests
+
+rules: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
+
+tests: $(VENV)/.installed-dev
 	$(BIN)/pytest -n auto --dist loadfile --no-loadscope-reorder
 
 # every test, the nightly ones among them; what was found goes into docs/validation.md

@@ -1,35 +1,32 @@
 """Which tests are left to the nightly run, and that those of the list exist."""
 
-import pytest
-
 from tests.nightly_tests import (
+    FEW,
     ROOT,
     SLOW_CASE,
     SLOW_PHYSICS,
     SLOW_TEST,
+    VERY_SLOW,
+    Cost,
     chosen,
-    durations,
     nightly_tests,
+    read_costs,
 )
 
 
-def test_durations_are_read_as_pytest_prints_them():
-    text = """
-============================= slowest durations ==============================
-12.50s setup    tests/a.py::test_one
-0.75s call     tests/a.py::test_one
-3.00s call     tests/b.py::test_two[a case, of "two" words]
-(9 durations < 0.005s hidden.  Use -vv to show these durations.)
+def test_costs_are_read_as_they_are_recorded():
+    text = """["tests/a.py::test_one", 0.75, []]
+["tests/b.py::test_two[a case, of \\"two\\" words]", 3.0, ["1f", "2e"]]
 """
-    assert durations(text) == {
-        "tests/a.py::test_one": pytest.approx(13.25),
-        'tests/b.py::test_two[a case, of "two" words]': pytest.approx(3.0),
+    assert read_costs(text) == {
+        "tests/a.py::test_one": Cost(0.75),
+        'tests/b.py::test_two[a case, of "two" words]': Cost(3.0, ("1f", "2e")),
     }
 
 
 def test_the_quickest_case_stays_one_test_of_a_module_and_longer_ones_of_the_physics():
     slow = 2.0 * SLOW_TEST
-    assert slow < SLOW_PHYSICS
+    assert slow < SLOW_PHYSICS < VERY_SLOW
     seconds = {
         "tests/a.py::test_cases[1]": slow,
         "tests/a.py::test_cases[2]": 2.0 * slow,
@@ -42,15 +39,35 @@ def test_the_quickest_case_stays_one_test_of_a_module_and_longer_ones_of_the_phy
         "tests/cutting/test_d.py::test_long": 1.1 * SLOW_PHYSICS,
         "tests/cutting/test_d.py::test_cases[1]": slow,
         "tests/cutting/test_d.py::test_cases[2]": 0.5 * slow,
+        "tests/cutting/test_d.py::test_very_slow[1]": 1.1 * VERY_SLOW,
+        "tests/cutting/test_d.py::test_very_slow[2]": 1.2 * VERY_SLOW,
     }
-    assert chosen([*seconds, "tests/c.py::test_not_timed"], seconds) == [
+    costs = {test: Cost(taken) for test, taken in seconds.items()}
+    assert chosen([*seconds, "tests/c.py::test_not_timed"], costs) == [
         "tests/a.py::test_alone",
         "tests/a.py::test_cases[1]",
         "tests/a.py::test_cases[2]",
         "tests/b.py::test_slower",
         "tests/cutting/test_d.py::test_cases[1]",
         "tests/cutting/test_d.py::test_long",
+        "tests/cutting/test_d.py::test_very_slow[1]",
+        "tests/cutting/test_d.py::test_very_slow[2]",
     ]
+
+
+def test_what_a_run_left_out_stays_left_out():
+    costs = {"tests/a.py::test_cases[2]": Cost(2.0 * SLOW_CASE)}
+    listed = frozenset({"tests/a.py::test_cases[1]", "tests/a.py::test_removed"})
+    every = ["tests/a.py::test_cases[1]", *costs]
+    assert chosen(every, costs, listed) == ["tests/a.py::test_cases[1]"]
+
+
+def test_a_kind_of_the_time_loop_is_not_compiled_for_few_tests():
+    few = {f"tests/a.py::test_{i}": Cost(0.1, ("rare", "usual")) for i in range(FEW)}
+    more = {f"tests/b.py::test_{i}": Cost(0.1, ("usual",)) for i in range(FEW)}
+    alone = {"tests/c.py::test_alone": Cost(0.1, ("own",))}
+    costs = {**few, **more, **alone, "tests/a.py::test_without": Cost(0.1)}
+    assert chosen(costs, costs) == sorted(few)
 
 
 def test_every_test_of_the_list_exists():
