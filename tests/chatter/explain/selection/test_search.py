@@ -416,8 +416,8 @@ class Lower(Offset):
         return {"axis.offset": 10.0 * (1.0 - float(values["share"]))}
 
 
-def test_effects_that_begin_at_nothing_promise_what_they_do_beside_rounding_and_at_a_bound():
-    """Coarse predictions are corrected: no effect leaves a residual that is the same but for that."""
+def test_what_begins_at_nothing_promises_what_it_does_beside_rounding_and_at_a_bound():
+    """Coarse predictions are corrected, so that no effect changes the residual by rounding."""
     problem, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0)))
     now = problem.fit(split.fitted, {})
     rounding = 1e-13 * np.random.default_rng(5).standard_normal(SAMPLES)
