@@ -23,10 +23,10 @@ from dynamics.identification.residues import (
 )
 
 #: phase at the highest line up to which a delay is looked for, rad
-_LARGEST_PHASE = 1.0
+_LARGEST_PHASE = 2.0
 
 #: delays tried, both signs
-_TRIALS = 41
+_TRIALS = 81
 
 #: share of the largest receptance that counts as error beside the noise, so that the quietest
 #: lines alone do not decide

@@ -265,10 +265,14 @@ def _much_above(judged: ToolPointRecords, tool: ToolPointRecords) -> bool:
 
 
 def _supported_delay(tool: ToolPointRecords, real: RealModel) -> float:
-    """Delay of a model of all modes, s; 0 where the data do not ask for one (Schwarz 1978)."""
+    """Delay of a model of all modes, s; 0 where the data do not ask for one (Schwarz 1978).
+
+    Both fits are under the same noise, that of the records with what the model misses.
+    """
     judged = _with_discrepancy(tool, real)
+    with_delay = _again(judged, real, real.terms, real.delay, ROUGH)
     without = _again(judged, real, real.terms, None, ROUGH)
-    return float(real.delay or 0.0) if _worth(judged, real, without, 1) else 0.0
+    return float(with_delay.delay or 0.0) if _worth(judged, with_delay, without, 1) else 0.0
 
 
 def _immaterial(judged: ToolPointRecords, tool: ToolPointRecords, real: RealModel) -> int | None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import Frf, Point
+from dynamics.identification import tool_point
 from dynamics.identification.discrepancy import effective_samples, with_discrepancy
 from dynamics.identification.fit import identify_modes
 from dynamics.identification.residues import Records
@@ -35,7 +36,40 @@ def blow_on_a_tool(delay: float, seed: int = 1) -> Frf:
     return Frf(LINES, values + 2e-4 * np.max(np.abs(values)) * noise, "accelerance")
 
 
-@pytest.mark.parametrize("delay", [28e-6, -12e-6])
+class FitThatMisses:
+    """A fit with a delay, whose error is the same over all lines, under a noise."""
+
+    terms = ()
+
+    def __init__(self, delay, error, noise):
+        self.delay = delay
+        self.chi_square = 2.0 * 400 * (error / noise) ** 2
+        self._error = np.full((400, 1), error * (1 + 1j) / np.sqrt(2.0))
+
+    def synthesis(self, _tool):
+        return self._error
+
+
+def test_a_delay_is_supported_by_fits_under_the_same_noise(monkeypatch):
+    """Without the delay the error is three times as large; the first fit had a far lower noise."""
+    error, quiet = 1e-3, np.full((400, 1), 1e-5)
+    records = Records(OMEGA[:400], np.zeros((400, 1), complex), quiet, 0)
+    judged = replace(records, noise=np.full((400, 1), error))
+
+    def again(tool, _real, _terms, delay, _least_gain):
+        missed = error if delay else 3.0 * error
+        return FitThatMisses(delay, missed, float(tool.records.noise[0, 0]))
+
+    monkeypatch.setattr(tool_point, "_again", again)
+    monkeypatch.setattr(tool_point, "effective_samples", lambda _error: 200.0)
+    monkeypatch.setattr(
+        tool_point, "_with_discrepancy", lambda tool, _real: replace(tool, records=judged)
+    )
+    tool = tool_point.ToolPointRecords(records, ("x",), ((0, 0),))
+    assert tool_point._supported_delay(tool, FitThatMisses(9e-6, error, 1e-5)) == 9e-6
+
+
+@pytest.mark.parametrize("delay", [28e-6, -12e-6, 60e-6])
 def test_one_blow_gives_the_modes_of_the_tool_and_no_more(delay):
     fit = identify_modes([blow_on_a_tool(delay)])
     assert len(fit.modes) == len(TOOL)
