@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.explain.criteria import (
     AT_NOISE,
@@ -55,7 +54,7 @@ def screened_candidates(
     cheap = problem.kind.cheaper_runs(problem.measurement.case, runs)
     if not cheap:
         return [ScreenedCandidate(effect) for effect in effects]
-    part = _fit_to(problem, now, runs, cheap)
+    part = problem.part_of(now, runs, cheap)
     kinds = {run.kind for run in cheap}
     shown = [one for one in effects if kinds & set(one.kinds)]
     if part.cost > NEAR_NOISE**2 * part.residuals.size:
@@ -114,15 +113,6 @@ def least_promise(problem: Problem, now: Fit) -> float:
     fixed, share = problem.kind.least_gain
     misfit = now.cost - now.residuals.size
     return PROMISING * max(fixed + share * now.residuals.size, LEAST_SHARE * misfit)
-
-
-def _fit_to(problem: Problem, now: Fit, runs: Sequence[Run], cheap: Sequence[Run]) -> Fit:
-    """Fit with the residuals of some of the runs alone."""
-    chosen = {run.name for run in cheap}
-    rows: NDArray[np.bool_] = np.concatenate(
-        [np.full(problem.count([run]), run.name in chosen) for run in runs]
-    )
-    return replace(now, residuals=now.residuals[rows], jacobian=now.jacobian[rows])
 
 
 def _asked_for(

@@ -21,6 +21,8 @@ _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
 _KEPT_PROMISE = 0.5
 #: starts with the declared values put back of which a linearised step is made
 _SIZABLE_STARTS = 3
+#: runs by which many starts are ranked first, and starts that are then ranked by all runs
+_FEW_RUNS, _RANKED_STARTS = 2, 2 * SCREENED_STARTS
 #: rms of a change, over the noise, that is none: rounding, and where a record lies beside it
 _NO_CHANGE = 1e-3
 #: standard deviations by which a declared value is drawn where a mode may stand beside another
@@ -89,8 +91,11 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     """
     begins = _Begins.of(problem, effect, now, runs)
     secants = _secants_of(problem, effect, now, runs)
-    chosen = secants.best(begins.own, SCREENED_STARTS)
-    chosen += secants.best(begins.sizable, _SIZABLE_STARTS)
+    own, sizable = (
+        _worth_all_runs(problem, effect, now, runs, some) for some in (begins.own, begins.sizable)
+    )
+    chosen = secants.best(own, SCREENED_STARTS)
+    chosen += secants.best(sizable, _SIZABLE_STARTS)
     chosen += begins.proposed
     trial = problem.with_effect(effect)
     added = trial.parameters()[len(now.parameters) :]
@@ -100,12 +105,29 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
 def promised_by_secants(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> float:
     """Fall of the sum of squares on the best line from no effect through one of its starts.
 
-    One prediction a run for each start. Where the residual is at the noise an effect is small, so
-    that what it does grows along such a line.
+    One prediction a run for each start that few runs leave. Where the residual is at the noise an
+    effect is small, so that what it does grows along such a line.
     """
     begins = _Begins.of(problem, effect, now, runs)
-    every = [*begins.own, *begins.sizable, *begins.proposed] or [begins.declared]
+    worth = _worth_all_runs(problem, effect, now, runs, [*begins.own, *begins.sizable])
+    every = [*worth, *begins.proposed] or [begins.declared]
     return now.cost - min(_secants_of(problem, effect, now, runs).costs(every))
+
+
+def _worth_all_runs(
+    problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run], begins: list[dict[str, float]]
+) -> list[dict[str, float]]:
+    """Starts whose lines do best by the few runs in which most is left; all where they are few.
+
+    Frequencies are sought by dozens of starts, most of which a run or two tell to be of no use.
+    """
+    if len(begins) <= _RANKED_STARTS or len(runs) <= _FEW_RUNS:
+        return begins
+    left = [problem.part_of(now, runs, [run]) for run in runs]
+    order = sorted(range(len(runs)), key=lambda k: left[k].residuals.size - left[k].cost)
+    few = [runs[k] for k in sorted(order[:_FEW_RUNS])]
+    part = problem.part_of(now, runs, few)
+    return _secants_of(problem, effect, part, few).best(begins, _RANKED_STARTS)
 
 
 class _Begins(NamedTuple):

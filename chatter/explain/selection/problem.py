@@ -166,6 +166,14 @@ class Problem:
         """Fit everything to runs near enough to rank candidates by."""
         return self._fit_by(rough_fit, runs, start, jacobian)
 
+    def part_of(self, found: Fit, runs: Sequence[Run], chosen: Sequence[Run]) -> Fit:
+        """Return a fit to runs with the residuals of some of them alone."""
+        names = {run.name for run in chosen}
+        rows: NDArray[np.bool_] = np.concatenate(
+            [np.full(self.count([run]), run.name in names) for run in runs]
+        )
+        return replace(found, residuals=found.residuals[rows], jacobian=found.jacobian[rows])
+
     def judged(self, found: Fit, runs: Sequence[Run]) -> Fit:
         """Return a fit to coarse predictions with the residuals of the predictions themselves."""
         return replace(found, residuals=self.residuals(found.by_name, runs))

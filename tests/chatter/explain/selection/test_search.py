@@ -425,3 +425,30 @@ def test_what_begins_at_nothing_promises_what_it_does_beside_rounding_and_at_a_b
     for effect in (Offset(), Lower()):
         promised = promised_by_secants(coarse, effect, now, split.fitted)
         assert promised == pytest.approx(9.0 * len(split.fitted) * SAMPLES, rel=0.03)
+
+
+class Turned(Offset):
+    """Two shapes in any proportion, sought by thirty starts."""
+
+    def parameters(self, measurement):
+        return [free("size", 1.0, 0.1, ""), free("angle", 0.0, 0.3, "rad")]
+
+    def nothing(self, measurement):
+        return {"size": 0.0}
+
+    def patch(self, case, values):
+        size, angle = float(values["size"]), float(values["angle"])
+        return {"axis.asymmetry": size * np.cos(angle), "axis.offset": size * np.sin(angle)}
+
+    def starts(self, measurement):
+        return [{"angle": np.pi * k / 30} for k in range(30)]
+
+
+def test_of_many_starts_few_runs_tell_which_are_worth_the_others():
+    problem, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0), runs=9))
+    now, runs = problem.fit(split.fitted, {}), len(split.fitted)
+    made = problem.predictions.made
+    promised = promised_by_secants(problem, Turned(), now, split.fitted)
+    assert promised == pytest.approx(9.0 * runs * SAMPLES, rel=0.03)
+    # thirty starts by two runs, eight of them by the others
+    assert problem.predictions.made - made == 30 * 2 + 8 * (runs - 2)
