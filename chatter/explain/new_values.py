@@ -9,7 +9,7 @@ from typing import Any
 import tomlkit
 
 from chatter.description.case import Case
-from chatter.description.path import Step, field_at, join_path
+from chatter.description.path import Step, field_at, join_path, parse_path
 from chatter.description.units import NUMBER, unit_factor
 from chatter.description.usual_units import of_dimension
 
@@ -35,6 +35,19 @@ def in_usual_units(case: Case, declared: Case) -> Case:
     after = tomlkit.parse(case.to_toml()).unwrap()
     changed = {join_path(steps): _written(steps, value) for steps, value in _new(before, after, ())}
     return case.patch(changed) if changed else case
+
+
+def in_declared_unit(declared: Case, path: str, value: float) -> str:
+    """Return a value in SI as text in the unit that a case has at a path, else in the usual one."""
+    steps = parse_path(path)
+    written = tomlkit.parse(declared.to_toml()).unwrap()
+    for step in steps:
+        there = isinstance(written, Mapping) and step in written
+        written = written[step] if there else None
+    match = _QUANTITY.fullmatch(written) if isinstance(written, str) else None
+    dimension = field_at(Case, steps).dimension
+    unit = (match["unit"] if match else None) or _unit(dimension, value)
+    return f"{value / unit_factor(unit, dimension):.{_DIGITS}g} {unit}".strip()
 
 
 def _new(

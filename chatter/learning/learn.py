@@ -18,7 +18,7 @@ from chatter.description.given_values import share_given, whole_number_given
 from chatter.description.units import rpm
 from chatter.explain.kinds.stability import Stability, likely_stable
 from chatter.explain.measurement import Measurement
-from chatter.explain.new_values import in_usual_units
+from chatter.explain.new_values import in_declared_unit, in_usual_units
 from chatter.explain.prediction import Predictions, kept_predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
@@ -226,7 +226,9 @@ class Learnt(NotebookResult):
             cases["next-cut.toml"] = updated.patch(
                 {
                     "cut.spindle_speed": f"{rpm(chosen.spindle_speed):.6g} rpm",
-                    "cut.axial_depth": f"{1e3 * chosen.axial_depth:.6g} mm",
+                    "cut.axial_depth": in_declared_unit(
+                        self.measurement.case, "cut.axial_depth", chosen.axial_depth
+                    ),
                 }
             )
         for name, case in cases.items():

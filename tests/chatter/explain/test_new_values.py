@@ -3,7 +3,7 @@
 import pytest
 
 from chatter import Case
-from chatter.explain.new_values import in_usual_units
+from chatter.explain.new_values import in_declared_unit, in_usual_units
 
 TEXT = """
 title = "3rd cut"   # kept
@@ -71,3 +71,12 @@ def test_new_values_are_in_usual_units_and_declared_ones_as_they_were():
 def test_a_case_as_declared_stays_as_it_is():
     declared = Case.from_text(TEXT)
     assert in_usual_units(declared, declared).to_toml() == declared.to_toml()
+
+
+def test_a_value_has_the_unit_that_the_case_has_there():
+    """25.4 mm are an inch; a bare number is in SI, and the usual unit is taken."""
+    inches = Case.from_text(TEXT.replace('axial_depth = "2 mm"', 'axial_depth = "0.05 in"'))
+    assert in_declared_unit(inches, "cut.axial_depth", 1.524e-3) == "0.06 in"
+    assert in_declared_unit(Case.from_text(TEXT), "cut.axial_depth", 1.524e-3) == "1.524 mm"
+    bare = Case.from_text(TEXT.replace('axial_depth = "2 mm"', "axial_depth = 0.002"))
+    assert in_declared_unit(bare, "cut.axial_depth", 1.524e-3) == "1.524 mm"
