@@ -53,6 +53,9 @@ def judged(evidence: Evidence) -> list[Segment]:
         own = [_supported(one, evidence) for one in own]
     other = evidence.other_speed
     if other is None:
+        speed = evidence.revolution
+        if speed is None or not speed.may_have_more_pulses:
+            return own
         return [_below_tacho(one, evidence) for one in own]
     if other.relation == REFUTED:
         return _of_two_speeds(evidence, own)
@@ -92,7 +95,7 @@ def _below_tacho(segment: Segment, evidence: Evidence) -> Segment:
 
     With several pulses a revolution it may be a harmonic of the spindle, or chatter.
     """
-    if segment.verdict not in (STABLE, IDLE) or not evidence.revolution.may_have_more_pulses:
+    if segment.verdict not in (STABLE, IDLE):
         return segment
     frames = evidence.frames
     rows = (frames.time >= segment.begin) & (frames.time <= segment.end)

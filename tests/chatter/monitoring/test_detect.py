@@ -389,3 +389,13 @@ def test_chatter_is_not_stable_whatever_pulses_its_tacho_has(pulses, teeth, revo
     assert found.verdict in ("chatter", "not judged")
     if pulses == 1:
         assert found.verdict == "chatter"
+
+
+def test_noise_at_two_levels_without_a_speed_is_idle_and_not_judged():
+    """Nothing shows a speed, and the quiet part is told by its level alone."""
+    time = clock(6.0)
+    values = np.where(time < 3.0, 0.01, 1.0) * np.random.default_rng(6).standard_normal(time.size)
+    found = chatter.detect(
+        Recording("made", 1.0 / RATE, ("a",), ("acceleration",), values[:, None])
+    )
+    assert {one.verdict for one in found.segments} == {"idle", "not judged"}
