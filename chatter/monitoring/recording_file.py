@@ -43,7 +43,9 @@ _NAMES = {
     "power": r"(p\d*$|pow)",
 }
 _TIME = re.compile(r"\s*(.*\.)?(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
-_TACHO = re.compile(r"\s*(tacho.*|trigger|once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.I)
+#: names of a tacho of one pulse a revolution, and of any
+_ONCE = re.compile(r"\s*(once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.IGNORECASE)
+_TACHO = re.compile(rf"\s*(tacho.*|trigger)\s*|{_ONCE.pattern}", re.IGNORECASE)
 #: names of a measured speed of the spindle, whose unit is one of turning
 _SPEED = re.compile(r"tacho|spindle|spindel|speed|drehzahl|rpm|n\b", re.IGNORECASE)
 #: channels that follow the tool: motor currents and power are read only where there are none
@@ -102,7 +104,8 @@ def _recording(
     table = replace(table, columns=tuple(map(_with_unit, table.columns)))
     numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
     time = _time(path, table, numbers, sampling_rate)
-    tacho = next((numbers[one.name] for one in table.columns if _is_tacho(one)), None)
+    pulses = next((one.name for one in table.columns if _is_tacho(one)), None)
+    tacho = None if pulses is None else numbers[pulses]
     _require_signal(path, table, numbers)
     chosen = _chosen(path, _usable(table, numbers), wanted)
     values = np.stack([one.values for one in chosen], axis=1)
@@ -123,7 +126,8 @@ def _recording(
         step = float((time[-1] - time[0]) / max(time.size - 1, 1))
     names, quantities = zip(*((one.name, one.quantity) for one in chosen), strict=True)
     speed = _speed(table, numbers)
-    return Recording(str(path), step, names, quantities, values, float(time[0]), tacho, speed)
+    once = pulses is not None and bool(_ONCE.fullmatch(pulses))
+    return Recording(str(path), step, names, quantities, values, float(time[0]), tacho, speed, once)
 
 
 def _with_unit(column: Column) -> Column:

@@ -149,7 +149,8 @@ class DetectedChatter(NotebookResult):
         revolution = self.evidence.revolution
         if self.refuting_speed is not None and self.given is not None:
             notes.append(in_words_of(self.refuting_speed, self.given, self.evidence.teeth))
-        if self.given is None and revolution is not None and revolution.source == "tacho":
+        by_tacho = revolution is not None and revolution.source == "tacho"
+        if by_tacho and self.given is None and not self.recording.once_per_revolution:
             notes.append(self._of_pulses(revolution))
         if revolution is not None and self.given is not None:
             ratio = revolution.mean / self.given

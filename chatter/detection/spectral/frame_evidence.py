@@ -296,15 +296,18 @@ def _by_tacho(
 ) -> tuple[Frames, Revolution, OtherSpeed | None] | None:
     """The same by a tacho; None where it has no pulses of a spindle.
 
-    Without a speed that is given, Hz, the lines tell how many pulses it has a revolution.
+    Without a speed that is given, Hz, the lines tell how many pulses it has a revolution, unless
+    its name does.
     """
 
     def read(frames: Frames) -> Revolution | None:
         return from_tacho(recording.tacho, recording.time_step, recording.start, frames, given)
 
     found = read(frames)
-    if found is None or given is not None:
-        return None if found is None else (*_read_over(recording, found, read), None)
+    if found is None:
+        return None
+    if given is not None or recording.once_per_revolution:
+        return *_read_over(recording, found, read), None
     long = _frames(recording, found.mean / MOST_PULSES, _LONG)
     count, least = pulses_by_lines(long, read(long).frequency)
     slowest = found.with_pulses(count)

@@ -45,9 +45,11 @@ class Recording:
     start : float
         s, time of the first sample.
     tacho : (n,) array of float or None
-        Once-per-revolution signal.
+        Pulses of a tacho.
     spindle_frequency : float or None
         Hz, as measured beside the channels.
+    once_per_revolution : bool
+        Whether the tacho is known to give one pulse a revolution.
 
     Raises
     ------
@@ -63,6 +65,7 @@ class Recording:
     start: float = 0.0
     tacho: NDArray[np.float64] | None = None
     spindle_frequency: float | None = None
+    once_per_revolution: bool = False
 
     def __post_init__(self) -> None:
         count = len(self.values)

@@ -360,6 +360,21 @@ def test_a_tacho_of_three_pulses_without_a_speed_is_told(teeth):
     assert "--spindle-speed" in note
 
 
+@pytest.mark.parametrize(
+    ("heading", "said"),
+    [("tacho [V]", True), ("once per revolution [V]", False), ("Keyphasor [V]", False)],
+)
+def test_the_name_of_a_tacho_may_state_one_pulse_a_revolution(tmp_path, heading, said):
+    time, values = made()
+    tacho = (np.mod(REVOLUTION * time + 0.4, 1.0) < 0.3).astype(float)
+    path = write_csv(tmp_path / "a.csv", f"time [s],ax [g],{heading}", time, np.c_[values, tacho])
+    found = chatter.detect(path)
+    assert found.verdict == "chatter"
+    assert found.evidence.revolution.mean == pytest.approx(REVOLUTION, rel=1e-3)
+    assert any("pulse" in one for one in found.notes) == said
+    assert found.recording.once_per_revolution != said
+
+
 def with_tacho(cut, seed, pulses):
     recording = cut.record(np.random.default_rng(seed))
     turned = pulses * cut.revolution * np.arange(len(recording.values)) * recording.time_step
