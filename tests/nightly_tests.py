@@ -27,8 +27,9 @@ LIST = ROOT / "tests" / "nightly.txt"
 SLOW_CASE, SLOW_TEST, SLOW_PHYSICS, VERY_SLOW = 0.3, 0.5, 2.0, 4.0
 #: a kind of the time loop that no more tests than these need is compiled for few
 FEW = 4
-#: published numbers and the rules of the tree stay in every run
+#: published numbers, the rules of the tree and the only run of a command stay in every run
 _ALWAYS = (
+    "tests/chatter/assembly/test_assemble.py::test_command_writes_what_it_says",
     "tests/validation/test_published.py",
     "tests/validation/test_hajdu_2020.py",
     "tests/test_architecture.py",

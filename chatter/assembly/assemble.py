@@ -161,9 +161,8 @@ class Assembly(NotebookResult):
             texts["lobes-stick-out.csv"] = csv_text(
                 {
                     "stick-out [mm]": Column(np.repeat(1e3 * self.stick_out, count), ".5g"),
-                    "spindle_speed [rpm]": (
-                        np.tile(rpm(self.lobes.spindle_speed), self.stick_out.size),
-                        ".8g",
+                    "spindle_speed [rpm]": Column(
+                        np.tile(rpm(self.lobes.spindle_speed), self.stick_out.size), ".8g"
                     ),
                     "critical_depth [mm]": Column(1e3 * self.lobes.critical_depth.ravel(), ".6g"),
                 }
