@@ -12,7 +12,6 @@ right, one and two per cent off, and not at all:
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections import Counter
 from dataclasses import replace
@@ -24,6 +23,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 from scipy.signal import resample_poly
 
+from benchmarks.stated_speeds import survey_arguments
 from chatter.detection.spectral.recording import Recording
 from chatter.monitoring.detect import detect
 
@@ -212,11 +212,7 @@ def versions(random: Generator, recording: Recording) -> list[Recording]:
 
 def main() -> None:
     """Print which verdict is given how often, by what is true and by how the speed is stated."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--each", action="store_true", help="print each that is wrong")
-    given = parser.parse_args()
+    given = survey_arguments(__doc__)
     counts: Counter[tuple[str, str, str]] = Counter()
     apart = []
     for seed in range(given.first, given.first + given.seeds):

@@ -97,13 +97,18 @@ def cuts(random: Generator) -> list[tuple[Cut, str]]:
     ]
 
 
-def main() -> None:
-    """Print how often which verdict is given, by factor and by what is true."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+def survey_arguments(description: str) -> argparse.Namespace:
+    """Arguments of a survey of seeds; its description is the first line of a docstring."""
+    parser = argparse.ArgumentParser(description=description.split("\n", 1)[0])
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--each", action="store_true", help="print each that is wrong")
-    given = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Print how often which verdict is given, by factor and by what is true."""
+    given = survey_arguments(__doc__)
     counts: Counter[tuple[float, str, str]] = Counter()
     for seed in range(given.first, given.first + given.seeds):
         random = np.random.default_rng(seed)
