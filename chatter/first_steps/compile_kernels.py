@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from chatter.description.case import Case, load
 from chatter.description.machine.machine_file import MachineFile, load_machine
-from chatter.first_steps.self_check import CASE
+from chatter.first_steps.self_check import CASE, compiled_self_check
 from chatter.io.shipped_examples import examples
 from chatter.simulation.simulate import simulate
 from chatter.simulation.virtual_tests.from_file import frf, move
@@ -126,6 +126,7 @@ def _of_time() -> Iterator[Question]:
         }
     for name, patch in of_cuts.items():
         yield Question(f"cut, {name}", partial(simulate, _case(patch=patch, short=_ONE)))
+    yield Question("self-check", compiled_self_check)
 
 
 def _of_machines() -> Iterator[Question]:

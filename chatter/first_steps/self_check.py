@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.engine import loop
-from chatter.engine.presets import is_compiled
+from chatter.engine.presets import CACHE_FOLDER
 from chatter.simulation.simulate import simulate
 from chatter.stability.check import check
-from chatter.stability.methods.collocation import drivers as collocation
-from chatter.stability.methods.semi_discretization import drivers as semi_discretization
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 
+#: among the compiled code, once it holds what every question needs
+_ASKED = CACHE_FOLDER / "self-check"
 _FREQUENCY, _DAMPING, _MASS = 922.0, 0.011, 0.03993
 _KTC, _RATIO, _TEETH = 600e6, 1.0 / 3.0, 2
 #: Insperger and Stepan (2004): a tool that gives way along the feed alone, half immersion, down
@@ -59,19 +60,25 @@ def self_check() -> list[CheckedAnswer]:
 
     What would have to be compiled first, apart from the zeroth order, is not asked for.
     """
-    case = Case.from_dict(CASE, "self-check")
-    linear = collocation.element_multipliers, semi_discretization.multipliers_at
-    asked = (
-        ("zeroth order, closed form", _zeroth_order, ()),
-        ("collocation, semi-discretization", _two_methods, linear),
-        ("in time, 20 % below and above", _in_time, (*linear, loop.run)),
-    )
-    return [
-        answer(case, name)
-        if is_compiled(*uses)
-        else CheckedAnswer(name, "not compiled yet", "", None, 0.0)
-        for name, answer, uses in asked
-    ]
+    if _ASKED.is_file():
+        return compiled_self_check()
+    first, *others = _QUESTIONS
+    skipped = [CheckedAnswer(name, "not compiled yet", "", None, 0.0) for name in others]
+    return [_QUESTIONS[first](_case(), first), *skipped]
+
+
+def compiled_self_check() -> list[CheckedAnswer]:
+    """Ask everything, whatever has to be compiled for it; afterwards `self_check` asks it too."""
+    case = _case()
+    answers = [answer(case, name) for name, answer in _QUESTIONS.items()]
+    # without a place for compiled code all is compiled anew at every start
+    with contextlib.suppress(OSError):
+        _ASKED.touch()
+    return answers
+
+
+def _case() -> Case:
+    return Case.from_dict(CASE, "self-check")
 
 
 def _zeroth_order(case: Case, name: str) -> CheckedAnswer:
@@ -99,6 +106,13 @@ def _in_time(case: Case, name: str) -> CheckedAnswer:
     seconds = time.perf_counter() - started
     right = verdicts == ["stable", "chatter"]
     return CheckedAnswer(name, " and ".join(verdicts), "stable and chatter", right, seconds)
+
+
+_QUESTIONS: dict[str, Callable[[Case, str], CheckedAnswer]] = {
+    "zeroth order, closed form": _zeroth_order,
+    "collocation, semi-discretization": _two_methods,
+    "in time, 20 % below and above": _in_time,
+}
 
 
 def closed_form_limit(speed: float) -> float:

@@ -19,7 +19,7 @@ from chatter.app.workbench.residual_view import ResidualView
 from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session, checked_name, readable_extensions
 from chatter.app.workbench.studies import run_measurement
-from chatter.app.workbench.upload import dropper
+from chatter.app.workbench.upload import LATE, dropper
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
@@ -27,8 +27,6 @@ from chatter.explain.measurement_file import read_measurement
 
 _FOLDER, _FILE = "measurements", "measurement.toml"
 _CASE = "case.toml"
-#: s after a file in which another may be of the same drop
-_LATE = 15.0
 #: what is said of work that was cancelled: an explanation keeps the predictions that it has made
 _CANCELLED = {
     "compare": "cancelled",
@@ -168,7 +166,7 @@ class MeasurementView:
         has a file of a name that is there already.
         """
         before, named = self._dropped_into, self.name.value != self._proposed
-        late = before is not None and not named and self.upload.pause() < _LATE
+        late = before is not None and not named and self.upload.pause() < LATE
         if not (late and not self._session.path(f"{before}/{file}").exists()):
             self._dropped_into = self._new_folder()
         self._joins = (self._session.path(str(self._dropped_into)) / _FILE).is_file()

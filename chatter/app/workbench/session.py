@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import re
@@ -24,6 +25,8 @@ from chatter.io.formats.format_list import FORMATS
 
 #: folder of results below that of the session, and the file that says how they were made
 RESULTS, CALL = "results", "call.json"
+#: folder of files that were taken out of use
+_REMOVED = "removed"
 #: file beside results while they are computed, and after that where the computation was ended
 _STARTED = "started.txt"
 #: bytes of a file that is uploaded, and of all files of one upload
@@ -226,6 +229,18 @@ class Session:
         for name, content in files.items():
             self.path(f"{folder}/{name}").write_bytes(content)
         return target
+
+    def put_aside(self, files: Sequence[Path]) -> str:
+        """Move files of one folder out of use, into a new folder; returns its name."""
+        kept_in = next(
+            name for name in (f"{_REMOVED}/{files[0].parent.name}-{k}" for k in itertools.count(1))
+            if not self.path(name).exists()
+        )  # fmt: skip
+        target = self.path(kept_in)
+        target.mkdir(parents=True)
+        for one in files:
+            one.rename(target / one.name)
+        return kept_in
 
 
 def without_folder(text: object, folder: Path) -> str:

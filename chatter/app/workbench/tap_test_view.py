@@ -19,7 +19,7 @@ from chatter.app.workbench.picture_files import picture
 from chatter.app.workbench.result_panel import CODE, downloads, table_buttons
 from chatter.app.workbench.session import Session, readable_extensions
 from chatter.app.workbench.table_files import PageTable, as_html
-from chatter.app.workbench.upload import dropper
+from chatter.app.workbench.upload import LATE, dropper
 from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
@@ -65,8 +65,11 @@ class TapTestView:
         self.poles: list[tuple[float, float]] = []
         self.upload = dropper(self.take, "Hammer records or FRF files")
         self.upload.begun = self._drop_begins
+        self.upload.removed = self.remove
         #: folder that the files of a drop go to, whatever is chosen while they come
         self._dropped_into: str | None = None
+        #: names of the files that lay there before
+        self._before: frozenset[str] = frozenset()
         self.direction = pn.widgets.Select(label="Direction", options=["x", "y", "z"], width=100)
         self.side = pn.widgets.Select(label="Side", options=["tool", "workpiece"], width=140)
         self.columns = pn.widgets.TextInput(
@@ -74,7 +77,12 @@ class TapTestView:
             placeholder="time [s],force [N],acceleration [m/s^2]",
         )  # fmt: skip
         self.records: dict[str, pn.widgets.Checkbox] = {}
+        #: records that a person has ticked or unticked
+        self._by_hand: dict[str, bool] = {}
         self._record_list = pn.Column()
+        self._heading = pn.pane.Markdown("")
+        self.joined = wrapped_text("", 560)
+        self.remove_all = pn.widgets.Button(label="Remove all records")
         self.into_case = pn.widgets.Button(label="Modes into the case", color="primary",
                                            disabled=True)  # fmt: skip
         self.automatic = pn.widgets.Button(label="Poles found automatically")
@@ -98,6 +106,7 @@ class TapTestView:
         self.into_case.on_click(lambda _: self.put_into_case())
         self.automatic.on_click(lambda _: self.fit())
         self.picked.on_click(lambda _: self.fit_picked())
+        self.remove_all.on_click(lambda _: self.remove_files())
         for widget in (self.direction, self.side, self.columns):
             widget.param.watch(lambda _: self._options_changed(), "value")
 
@@ -124,8 +133,10 @@ class TapTestView:
                     self.modes,
                     pn.Row(*self.tables),
                     self.into_case,
-                    pn.pane.Markdown("**Records** (a tick: the record is used)"),
+                    self._heading,
+                    self.joined,
                     self._record_list,
+                    self.remove_all,
                 ),
             ),
             self.same_call,
@@ -137,7 +148,8 @@ class TapTestView:
         """Write uploaded files beside the case and fit modes to them."""
         name = self._dropped_into or self._folder_name()
         try:
-            folder = self._session.store(name, files, readable_extensions())
+            changed = self._changed(name, files)
+            self._session.store(name, files, readable_extensions())
         except InputError as error:
             self.message.object = self._session.short(error)
             return
@@ -146,21 +158,62 @@ class TapTestView:
             names = ", ".join(sorted(files))
             self.message.object = f"{names}: in {name}, the direction as they were dropped"
             return
-        self.files = [folder / name for name in sorted(files)]
-        # faults found before are no ticks of a person: files come one by one
-        self.records, self.test = {}, None
+        self._by_hand = {key: tick for key, tick in self._by_hand.items() if key not in changed}
+        self.files = self._files_in(name)
+        self.joined.object = _told_of_joining(set(files) - self._before, self._before)
         self.fit()
 
+    def remove_files(self) -> None:
+        """Take all files out of those of the direction: what is dropped next stands alone."""
+        names = [one.name for one in self.files]
+        self.upload.forget()
+        self.remove(*names)
+
+    def remove(self, *names: str) -> None:
+        """Take files out of those of the direction; they are kept in a folder beside."""
+        folder = self._folder_name()
+        gone = [one for one in self._files_in(folder) if one.name in names]
+        if not gone:
+            return
+        kept_in = self._session.put_aside(gone)
+        self._before -= {one.name for one in gone}
+        self._begin_anew()
+        self.open_folder()
+        if not self.files:
+            self.computations.cancel()
+            self._fitted.pop((self.side.value, self.direction.value), None)
+            self._results.visible = False
+            self.message.object = f"{_counted(len(gone))} moved to {kept_in}; {_FIRST_STEP}"
+
     def _drop_begins(self, _: str) -> None:
+        """Note what lies in the folder; a busy page pauses between two files of one drop."""
+        late = self._dropped_into == self._folder_name() and self.upload.pause() < LATE
         self._dropped_into = self._folder_name()
+        if not late:
+            self._before = frozenset(one.name for one in self._files_in(self._dropped_into))
+
+    def _changed(self, folder: str, files: Mapping[str, bytes]) -> set[str]:
+        """Names of files that are new in a folder, or others than those of the name there."""
+        there = {one.name: one for one in self._files_in(folder)}
+        return {name for name, content in files.items()
+                if name not in there or there[name].read_bytes() != content}  # fmt: skip
+
+    def _files_in(self, folder: str) -> list[Path]:
+        """Files of a folder that may be records or FRFs."""
+        return [one for one in sorted(self._session.path(folder).glob("*"))
+                if one.suffix.lower() in readable_extensions() and one.is_file()]  # fmt: skip
 
     def open_folder(self) -> None:
         """Take up the records that lie in the folder of the direction, as of a session before."""
-        folder = self._session.path(self._folder_name())
-        self.files = [one for one in sorted(folder.glob("*"))
-                      if one.suffix.lower() in readable_extensions()]  # fmt: skip
+        self.files = self._files_in(self._folder_name())
         if self.files:
             self.fit()
+
+    def _begin_anew(self) -> None:
+        """Forget what was found and ticked of the files before."""
+        self.files, self.records, self.test, self._by_hand = [], {}, None, {}
+        self._record_list.objects, self.joined.object = [], ""
+        self._fitting = {}  # what is fitted still is of the files before
 
     def fit(self, poles: list[tuple[float, float]] | None = None) -> None:
         """Fit modes to the records that are used, at all poles or at those given."""
@@ -251,41 +304,37 @@ class TapTestView:
         return f"taps-{self.side.value}-{self.direction.value}"
 
     def _options_changed(self) -> None:
-        if self.files and self.files[0].parent != self._session.path(self._folder_name()):
-            self.upload.forget()  # those are of the direction before
-            self.files, self.records, self.test = [], {}, None
-            self._record_list.objects = []
-            self._fitting = {}  # what is fitted still is of the direction before
-            self._hold_direction(False)
-            self.open_folder()
-        elif self.files:
-            self.fit()
+        if self.files and self.files[0].parent == self._session.path(self._folder_name()):
+            self.fit()  # with other columns
+            return
+        self.upload.forget()  # those are of the direction before
+        self._begin_anew()
+        self._hold_direction(False)
+        self._results.visible = False
+        self.message.object = f"no file of {self.side.value}, {self.direction.value} yet"
+        self.open_folder()
 
     def _arguments(self) -> dict[str, Any]:
         """Arguments of `chatter.modes` for what is chosen."""
         columns = self.columns.value.strip() or None
         hammered = any(is_hammer_record(one, columns) for one in self.files)
         found: dict[str, Any] = {"direction": self.direction.value, "side": self.side.value}
-        left_out = {name for name, box in self.records.items() if not box.value}
-        found_bad = self._excluded()
-        by_hand = left_out - found_bad
+        left_out = {name for name, used in self._by_hand.items() if not used}
+        kept = set(self._by_hand) - left_out
         if hammered:
             bad = {name for name, why in self._reasons().items() if why.startswith("unreadable")}
             found["paths"] = (
-                [one for one in self.files if one.name not in by_hand | bad]
-                if by_hand
+                [one for one in self.files if one.name not in left_out | bad]
+                if left_out - bad
                 else self.files[0].parent
             )
-            found["keep"] = sorted(found_bad - left_out)
+            found["keep"] = sorted(kept)
             found["columns"] = columns
         else:
             found["paths"] = [one for one in self.files if one.name not in left_out]
         if self.poles:
             found["poles"] = self.poles
         return {key: value for key, value in found.items() if value not in (None, [])}
-
-    def _excluded(self) -> set[str]:
-        return set(self._reasons())
 
     def _reasons(self) -> dict[str, str]:
         """Record -> why the examination leaves it out, or would."""
@@ -381,20 +430,31 @@ class TapTestView:
         stabilisation.y_range.update(start=0.0, end=top)
 
     def _list_records(self, test: ModalTest) -> None:
-        """One line a record: used or not, and why."""
-        if test.hammer is None:
-            self._record_list.objects = []
-            return
+        """One line a file: used or not, and why."""
         reasons = self._reasons()
-        names = [one.name for one in self.files]
+        used = (
+            {one.name for one in self.files if self._by_hand.get(one.name, True)}
+            if test.hammer is None
+            else set(test.hammer.used)
+        )
+        self._heading.object = (
+            f"**Records of {self.side.value}, {self.direction.value}** (a tick: it is used)"
+        )
         rows = []
-        for name in names:
-            box = pn.widgets.Checkbox(label=name, value=name in test.hammer.used, width=150)
-            box.param.watch(lambda _: self.fit(self.poles), "value")
-            why = reasons.get(name, "" if box.value else "left out by hand")
+        for name in (one.name for one in self.files):
+            box = pn.widgets.Checkbox(label=name, value=name in used, width=150)
+            box.param.watch(lambda event, name=name: self._ticked(name, event.new), "value")
+            left_out = "" if box.value else "left out by hand"
             self.records[name] = box
-            rows.append(pn.Row(box, wrapped_text(why, 440)))
+            rows.append(pn.Row(box, wrapped_text(reasons.get(name, left_out), 440)))
         self._record_list.objects = rows
+
+    def _ticked(self, name: str, used: bool) -> None:
+        """Use a file, or leave it out, as a person wants it."""
+        self._by_hand[name] = used
+        if used and name not in self._reasons():
+            del self._by_hand[name]  # as it is without a person
+        self.fit(self.poles)
 
     def _same_call(self, arguments: Mapping[str, Any]) -> str:
         given = dict(arguments)
@@ -453,6 +513,20 @@ class TapTestView:
         drawn.yaxis.axis_label = "model order"
         drawn.title.text = "poles: blue stable, orange not; click picks one"
         return drawn
+
+
+def _counted(files: int) -> str:
+    return "1 file" if files == 1 else f"{files} files"
+
+
+def _told_of_joining(dropped: set[str], before: frozenset[str]) -> str:
+    """Say which files came to which; empty where there were none before."""
+    if not dropped or not before:
+        return ""
+    return (
+        f"{', '.join(sorted(dropped))}: judged together with the {_counted(len(before))} that lay "
+        "here before. Untick what does not belong to this test, or remove all and drop anew."
+    )
 
 
 def _function(f: Any, values: Any, factor: float) -> dict[str, Any]:

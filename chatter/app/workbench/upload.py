@@ -15,6 +15,8 @@ PART = 512 * 1024
 #: s without a part of a file after which the next file is of another drop: the page sends those of
 #: one without a pause
 _PAUSE = 1.0
+#: s after a file in which another may be of the same drop
+LATE = 15.0
 
 
 class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-ignore]
@@ -28,6 +30,8 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
         self.begun: Callable[[str], None] = lambda _: None
         #: called with the name of a file that is not complete yet and the share that has come
         self.arriving: Callable[[str, float], None] = lambda *_: None
+        #: called with the name of a file that is taken off the list
+        self.removed: Callable[[str], None] = lambda _: None
 
     def pause(self) -> float:
         """Time since the last part of a file came, s."""
@@ -46,6 +50,8 @@ class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-i
     def _process_event(self, event: Any) -> None:
         data = event.data
         if event.event_name == "delete_event":
+            if data.get("name") in self.files():  # those handed over before are of other drops
+                self.removed(data["name"])
             super()._process_event(event)
             return
         name, part = data.get("name"), data.get("data", b"")

@@ -231,6 +231,71 @@ def test_records_are_overruled_both_ways(tapped):
     assert "tap1.csv" not in view.same_call.object
 
 
+def test_what_is_dropped_later_is_said_to_join_and_can_be_removed(tapped, tmp_path, taps):
+    """The files of an earlier drop were used with it, and were not even listed."""
+    view, folder = tapped.tap_test, tmp_path / "taps-tool-x"
+    name = min(taps)
+    with_parts(view.upload, "late.csv", taps[name], [1, 2])
+    assert view.computations.wait(PATIENCE)
+    assert view.joined.object.startswith(f"late.csv: judged together with the {len(taps)} files")
+    assert set(view.records) == {*taps, "late.csv"}
+    # the cross of the list in the page takes it out again
+    view.upload._process_event(
+        SimpleNamespace(event_name="delete_event", data={"name": "late.csv"})
+    )
+    assert view.computations.wait(PATIENCE)
+    assert {one.name for one in folder.iterdir()} == set(view.records) == set(taps)
+    view.remove_files()
+    assert list(folder.iterdir()) == []
+    assert {one.name for one in (tmp_path / "removed" / "taps-tool-x-2").iterdir()} == set(taps)
+    assert "removed/taps-tool-x-2" in view.message.object
+    assert not view._results.visible
+    with_parts(view.upload, "alone.csv", taps[name], [1, 2])
+    assert view.computations.wait(PATIENCE)
+    assert (set(view.records), view.joined.object) == ({"alone.csv"}, "")
+
+
+def test_a_tick_of_a_person_stays_when_a_file_joins(tapped, taps):
+    view = tapped.tap_test
+    view.overrule("tap2.csv", True)
+    view.overrule("tap1.csv", False)
+    with_parts(view.upload, "late.csv", taps["tap3.csv"], [1, 2])
+    assert view.computations.wait(PATIENCE)
+    assert "tap2.csv" in view.test.hammer.used
+    assert "tap1.csv" not in view.test.hammer.used
+    assert not view.records["tap1.csv"].value
+
+
+def test_frf_files_are_listed_and_can_be_left_out(tmp_path):
+    """FRFs had no ticks: a file once dropped could not be taken out."""
+    frequency = np.arange(300.0, 1500.0, 1.0)
+    omega, natural = 2.0 * np.pi * frequency, 2.0 * np.pi * 900.0
+    values = 1.0 / (0.05 * (natural**2 - omega**2 + 0.04j * natural * omega))
+    rows = [f"{f},{v.real},{v.imag}" for f, v in zip(frequency, values, strict=True)]
+    text = "\n".join(["frequency [Hz],real [m/N],imag [m/N]", *rows]).encode()
+    page = Workbench(tmp_path)
+    view = page.tap_test
+    view.take({"a.csv": text, "b.csv": text})
+    assert view.computations.wait(PATIENCE)
+    assert set(view.records) == {"a.csv", "b.csv"}
+    view.overrule("b.csv", False)
+    assert view.computations.wait(PATIENCE)
+    assert "taps-tool-x/a.csv" in view.same_call.object
+    assert "b.csv" not in view.same_call.object
+    page.end()
+
+
+def test_files_of_another_direction_are_taken_up_from_the_folder(tapped, tmp_path):
+    """Records of y that lay there were not shown where x had none."""
+    (tmp_path / "taps-tool-x").rename(tmp_path / "taps-tool-y")
+    page = Workbench(tmp_path)
+    assert page.tap_test.files == []
+    page.tap_test.direction.value = "y"
+    assert page.tap_test.computations.wait(PATIENCE)
+    assert page.tap_test.test is not None
+    page.end()
+
+
 def test_picked_poles_are_the_modes(tapped):
     view = tapped.tap_test
     drawn = np.asarray(view.diagram.data["f"])

@@ -5,11 +5,11 @@ from typer.testing import CliRunner
 
 import chatter
 from chatter.cli import program
-from chatter.description.case import Case, loads
+from chatter.description.case import loads
 from chatter.description.errors import InputError
 from chatter.first_steps import self_check
 from chatter.first_steps.first_case import QUESTIONS, first_case
-from chatter.first_steps.self_check import CASE, closed_form_limit
+from chatter.first_steps.self_check import closed_form_limit
 from tests.command_line import chatter_command
 
 EXAMPLES = {name: question.example for name, question in QUESTIONS.items()}
@@ -120,19 +120,18 @@ def test_closed_form_at_the_lowest_point_of_a_lobe():
     assert min(map(closed_form_limit, speeds)) == pytest.approx(lowest, rel=2e-3)
 
 
-def test_doctor():
-    case = Case.from_dict(CASE, "asked before")
-    for method in ("collocation", "semi-discretization"):
-        chatter.check(case, method)
-    chatter.simulate(case)
+def test_doctor_asks_what_was_compiled_for_it(monkeypatch, tmp_path):
+    monkeypatch.setattr(self_check, "_ASKED", tmp_path / "asked")
+    self_check.compiled_self_check()
     shown = chatter_command("doctor")
     assert shown.exit_code == 0, shown.output
     assert shown.stdout.count("right") == 3
     assert "not compiled" not in shown.stdout
 
 
-def test_doctor_compiles_no_more_than_the_zeroth_order(monkeypatch):
-    monkeypatch.setattr(self_check, "is_compiled", lambda *uses: not uses)
+def test_doctor_compiles_no_more_than_the_zeroth_order(monkeypatch, tmp_path):
+    """Where another case had compiled a part of them, it compiled for two minutes."""
+    monkeypatch.setattr(self_check, "_ASKED", tmp_path / "asked")
     shown = chatter_command("doctor")
     assert shown.exit_code == 0, shown.output
     assert (shown.stdout.count("right"), shown.stdout.count("not compiled yet")) == (1, 2)
