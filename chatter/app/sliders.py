@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from chatter.app.stated_units import stated_dimension
 from chatter.compile.cutter import force_law
-from chatter.description.case import Case
+from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import rpm, unit_factor
 
+#: lowest friction of a slider, as a share of what the case has
+_LEAST_FRICTION = 0.01
 #: modes with sliders of their own
 _MOST_MODES = 6
 _MOST_TEETH = 12
@@ -171,6 +174,7 @@ def _of_process(case: Case) -> Iterator[Slider]:
     if case.on_machine and case.structure.friction is not False:
         value, path = case.structure.amplitude_at_frictions * 1e6, "structure.friction_amplitude"
         yield _from_zero(path, group, "vibration at the machine's frictions", "um", value, 20.0)
+        yield from _of_machine_frictions(case, group)
     if given is not None and given.indentation_force is not None:
         path = "process_damping.indentation_force"
         yield _around(path, group, "indentation force", "N/mm^3", given.indentation_force)
@@ -188,17 +192,41 @@ def _of_wear(case: Case, group: str) -> Iterator[Slider]:
     for name, law in case.friction.items():
         if law.coulomb is not None:
             path = f"friction.{name}.coulomb"
-            yield _from_zero(path, group, f"friction {name}", "N", _rounded(law.coulomb), 100.0)
+            yield _friction(path, group, f"friction {name}", "N", law.coulomb, 100.0)
+
+
+def _friction(path: str, group: str, label: str, unit: str, value: float, least: float) -> Slider:
+    """Slider of a Coulomb friction; some laws require one above zero."""
+    slider = _from_zero(path, group, label, unit, value, least)
+    return replace(slider, low=_LEAST_FRICTION * slider.value)
+
+
+def _of_machine_frictions(case: Case, group: str) -> Iterator[Slider]:
+    """Coulomb friction of the guides, motors and bearings of the machine."""
+    for name, law in case.machine_file().friction.items():
+        if law.coulomb is None:
+            continue
+        path = f"{MACHINE_PATH}friction.{name}.coulomb"
+        label = f"friction {name} of the machine"
+        if stated_dimension(case, path) == "torque":
+            yield _friction(path, group, label, "N*m", law.coulomb, 0.1)
+        else:
+            yield _friction(path, group, label, "N", law.coulomb, 10.0)
 
 
 def why_no_friction_slider(case: Case) -> str:
     """Say where friction is stated, where a case has none of its own; empty where it has."""
     if any(law.coulomb is not None for law in case.friction.values()):
         return ""
+    if case.on_machine and case.structure.friction is False:
+        return "friction: that of the machine is left out, by structure.friction = false"
     if case.on_machine:
+        name = Path(case.structure.machine).name
+        stated = any(law.coulomb is not None for law in case.machine_file().friction.values())
         return (
-            f"friction: that of the machine, in {Path(case.structure.machine).name}; "
-            "structure.friction_amplitude is the vibration that it is taken at"
+            f"friction of the machine: Sliders into the case saves another machine beside {name}"
+            if stated
+            else f"friction: none is stated in {name}"
         )
     return (
         'friction: the case has none; a table [friction.NAME] and friction = "NAME" of a mode, '

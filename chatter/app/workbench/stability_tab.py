@@ -10,7 +10,9 @@ from typing import Any
 
 import panel as pn
 
+from chatter.app.stated_units import in_stated_unit
 from chatter.app.workbench.long_work import LongWork
+from chatter.app.workbench.other_machine import with_other_machine
 from chatter.app.workbench.session import Session, readable_extensions
 from chatter.app.workbench.stability_view import StabilityView
 from chatter.app.workbench.studies import STUDIES, run_study
@@ -94,12 +96,18 @@ class StabilityTab:
         if not changes:
             self.message.object = "no slider was moved"
             return
+        session = self._session
         try:
-            self._session.set_text(self._session.sound_case().patch(changes).to_toml())
+            case = session.sound_case()
+            changed = {path: in_stated_unit(case, path, value) for path, value in changes.items()}
+            patched, machine = with_other_machine(session, case, changed)
+            session.set_text(patched.to_toml())
         except InputError as error:
             self.work.show_message(str(error))
             return
-        self.message.object = f"{', '.join(changes)}: in the case, which is not saved yet"
+        beside = f"; its machine is {machine}, a new file" if machine else ""
+        told = f"{', '.join(changes)}: in the case, which is not saved yet{beside}"
+        self.message.object = told
 
     def take_frfs(self, files: Mapping[str, bytes]) -> None:
         """Let uploaded FRFs take the place of the modes of the case."""

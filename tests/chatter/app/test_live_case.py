@@ -167,3 +167,30 @@ def test_what_edge_forces_leave_open_is_said_as_the_command_says_it():
     plain = LiveCase(chatter.load(CASE), "collocation").diagram({}, "fine", no_progress)
     assert plain["operating"]["certain"]
     assert plain["pockets"]
+
+
+def test_friction_of_a_machine_moves_its_limit():
+    """At a vibration the friction of a guide damps and stiffens: without it the limit is another.
+
+    The limit without comes from the case whose frictions are left out.
+    """
+    case = chatter.load(EXAMPLES / "friction-amplitude" / "case.toml")
+    live = LiveCase(case, None)
+
+    def lowest(of, **values):
+        found = of.diagram(values, "coarse", no_progress)["crossings_mm"]
+        return min(one[0] for one in found if one)
+
+    path = "machine.friction.guide.coulomb"
+    with_friction, little = lowest(live), lowest(live, **{path: live.by_path[path].low})
+    frictionless = {"structure.friction": False, "structure.friction_amplitude": None}
+    without = LiveCase(case.patch(frictionless), None)
+    assert little == pytest.approx(lowest(without), rel=0.01)
+    assert with_friction > 1.1 * little
+
+
+def test_friction_of_a_motor_is_a_torque():
+    case = chatter.load(EXAMPLES / "face-mill-chatter" / "case.toml")
+    units = {one.path: one.unit for one in case_sliders(case)}
+    assert units["machine.friction.rotation_x.coulomb"] == "N*m"
+    assert units["machine.friction.translation_x.coulomb"] == "N"

@@ -365,6 +365,39 @@ def test_sliders_go_into_the_case(workbench):
     assert workbench.case.widgets["cut.axial_depth"].value == "1.25 mm"
 
 
+def test_a_slider_goes_into_the_case_in_its_unit_and_comments_stay(workbench, tmp_path):
+    """Among inches there were millimetres of seven digits."""
+    text = workbench.session.text.replace("[tool]", "# of the drawer\n[tool]")
+    workbench.session.set_text(text)
+    workbench.session.set_values([("cut.axial_depth", "80 thou"), ("cut.spindle_speed", "200 Hz")])
+    tab = workbench.stability
+    tab.refresh()
+    tab.diagram.sliders["cut.axial_depth"].value = 2.54
+    tab.diagram.sliders["cut.spindle_speed"].value = 9000.0
+    tab.keep_sliders()
+    assert 'axial_depth = "100 thou"' in workbench.session.text
+    assert 'spindle_speed = "150 Hz"' in workbench.session.text
+    assert "# of the drawer" in workbench.session.text
+
+
+def test_friction_of_a_machine_follows_a_slider_and_is_saved_as_another_machine(tmp_path):
+    for name in ("case.toml", "machine.toml"):
+        text = (EXAMPLES / "friction-amplitude" / name).read_text()
+        (tmp_path / name).write_text(text)
+    page = Workbench(tmp_path)
+    tab = page.stability
+    tab.refresh()
+    slider = tab.diagram.sliders["machine.friction.guide.coulomb"]
+    assert (slider.label, slider.value) == ("friction guide of the machine [N]", 10.0)
+    slider.value = 25.0
+    assert "'machine.friction.guide.coulomb=25 N'" in tab.diagram._same_call(tab.diagram.moved())
+    tab.keep_sliders()
+    assert 'machine = "case-machine-1.toml"' in page.session.text
+    assert 'coulomb = "25 N"' in (tmp_path / "case-machine-1.toml").read_text()
+    assert (tmp_path / "machine.toml").read_text() == text  # other cases may name it
+    page.end()
+
+
 def test_two_cases_stand_side_by_side(workbench, tmp_path):
     case = chatter.load(tmp_path / "case.toml")
     case.patch({"material.Ktc": "1200 MPa", "material.Krc": "400 MPa"}).save(tmp_path / "hard.toml")

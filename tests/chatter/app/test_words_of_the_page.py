@@ -87,7 +87,7 @@ def test_a_case_without_friction_says_how_to_add_it():
     assert why_no_friction_slider(stated) == ""
     assert "friction.guide.coulomb" in {one.path for one in case_sliders(stated)}
     machine = chatter.load(EXAMPLES / "friction-amplitude" / "case.toml")
-    assert "in machine.toml;" in why_no_friction_slider(machine)
+    assert "beside machine.toml" in why_no_friction_slider(machine)
     # the vibration that the frictions of a machine are taken at has one
     (vibration,) = [
         one for one in case_sliders(machine) if one.path == "structure.friction_amplitude"
