@@ -228,10 +228,7 @@ def why_no_friction_slider(case: Case) -> str:
             if stated
             else f"friction: none is stated in {name}"
         )
-    return (
-        'friction: the case has none; a table [friction.NAME] and friction = "NAME" of a mode, '
-        "in the TOML of the view Case, add it"
-    )
+    return "friction: the case has none; Add a section, in the view Case, gives a mode one"
 
 
 #: unit -> dimension, for the factor to SI

@@ -31,6 +31,8 @@ from cutting.material.table import MATERIALS
 _BOUNDED_LIST = ".bk-menu {max-height: 300px; overflow-y: auto}"
 _ERROR = {"color": "#c62828", "font-size": "12px"}
 _PATH = re.compile(r"^([A-Za-z_][\w.\[\]-]*): (.*)$", re.DOTALL)
+#: section of friction laws with names, and the one that has the fewest keys
+_FRICTION, _DRY = "friction", "coulomb-stribeck"
 _FIRST = ("tool", "material", "cut", "structure")
 
 
@@ -115,7 +117,7 @@ class CaseView:
             return
         offered = self._offered(content)
         try:
-            self._session.set_values([(offered[name], {})])
+            self._session.set_values(offered[name])
         except InputError as error:
             self.message.object = self._session.short(error)
 
@@ -155,17 +157,18 @@ class CaseView:
         except Exception:  # of several kinds: the message of the session says what
             return None
 
-    def _offered(self, content: dict[str, Any]) -> dict[str, str]:
-        """What may be added: label -> path."""
-        found = {}
+    def _offered(self, content: dict[str, Any]) -> dict[str, list[tuple[str, Any]]]:
+        """What may be added: label -> values to be set by path."""
+        found: dict[str, list[tuple[str, Any]]] = {}
         for name in sections(self._schema):
-            if name in ("friction",):
-                continue  # its tables have names of their own: by text
+            if name == _FRICTION:
+                found |= _frictions_of_modes(content)
+                continue
             if name not in content and self._schema["properties"][name].get("type") != "array":
-                found[name] = name
+                found[name] = [(name, {})]
             for label, path in new_entries(self._schema, name, content).items():
                 if name in content or label == name:
-                    found[f"{name}: one more {label}" if label != name else label] = path
+                    found[f"{name}: one more {label}" if label != name else label] = [(path, {})]
         return found
 
     def _fill(self, content: dict[str, Any]) -> None:
@@ -185,7 +188,10 @@ class CaseView:
             value = written(content, path)
             if self.widgets[path].value != value:
                 self._put(path, value)
-        self.section.options = list(self._offered(content)) if self._session.name else []
+        offered = list(self._offered(content)) if self._session.name else []
+        self.section.options = offered
+        if self.section.value not in offered:
+            self.section.value = next(iter(offered), None)
 
     def _put(self, path: str, value: str) -> None:
         widget = self.widgets[path]
@@ -195,9 +201,11 @@ class CaseView:
 
     def _build(self, by_section: dict[str, list[FormField]], content: dict[str, Any]) -> None:
         self.widgets, self.errors = {}, {}
+        faulty = {path for path, _ in self._problems_by_path()}
         parts: list[Any] = [self._row(self.fields["title"])] if self.fields else []
         for name, listed in by_section.items():
-            given = [one for one in listed if written(content, one.path)]
+            given = [one for one in listed
+                     if written(content, one.path) or one.path in faulty]  # fmt: skip
             rest = [one for one in listed if one not in given]
             # of a section that is new, the first few are what it mostly needs
             shown, hidden = (given, rest) if given else (rest[:6], rest[6:])
@@ -205,8 +213,9 @@ class CaseView:
             if hidden:
                 body.append(pn.Card(*(self._row(one) for one in hidden), title="further keys",
                                     collapsed=True, width=520))  # fmt: skip
+            is_open = name in _FIRST or any(one.path in faulty for one in listed)
             parts.append(pn.Card(*body, title=name.replace("_", " "), width=550,
-                                 collapsed=name not in _FIRST))  # fmt: skip
+                                 collapsed=not is_open))  # fmt: skip
         self._form.objects = parts
 
     def _row(self, field: FormField) -> pn.Column:
@@ -224,16 +233,23 @@ class CaseView:
         self.widgets[field.path], self.errors[field.path] = widget, error
         return pn.Row(widget, error)
 
-    def _show_problems(self) -> None:
-        beside: dict[str, list[str]] = {}
-        general = []
+    def _problems_by_path(self) -> list[tuple[str, str]]:
+        """Faults of the case, each with the path that it begins with, or without one."""
+        found = []
         for told in self._session.problems:
             text = told.removeprefix(f"{self._session.name}: ")
             match = _PATH.match(text)
-            if match is not None and match[1] in self.errors:
-                beside.setdefault(match[1], []).append(match[2])
+            found.append((match[1], match[2]) if match is not None else ("", text))
+        return found
+
+    def _show_problems(self) -> None:
+        beside: dict[str, list[str]] = {}
+        general = []
+        for path, text in self._problems_by_path():
+            if path in self.errors:
+                beside.setdefault(path, []).append(text)
             else:
-                general.append(text)
+                general.append(f"{path}: {text}" if path else text)
         for path, error in self.errors.items():
             error.object = "\n".join(beside.get(path, ()))
         hidden = [f"{path}: {'; '.join(told)}" for path, told in beside.items()]
@@ -241,6 +257,21 @@ class CaseView:
 
     def _short(self, messages: tuple[str, ...]) -> str:
         return self._session.short("\n".join(messages))
+
+
+def _frictions_of_modes(content: dict[str, Any]) -> dict[str, list[tuple[str, Any]]]:
+    """A dry friction for each mode without one: label -> values to be set by path."""
+    modes = (content.get("structure") or {}).get("mode") or ()
+    taken = content.get(_FRICTION) or {}
+    found = {}
+    for place, mode in enumerate(modes):
+        name = f"mode_{place + 1}"
+        if _FRICTION not in mode and name not in taken:
+            found[f"friction: of mode {place + 1}"] = [
+                (f"{_FRICTION}.{name}", {"law": _DRY}),
+                (f"structure.mode[{place}].{_FRICTION}", name),
+            ]
+    return found
 
 
 class NewCase:

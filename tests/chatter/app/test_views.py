@@ -356,6 +356,21 @@ def test_a_section_is_added_with_its_errors(workbench):
     assert workbench.session.case is None
 
 
+def test_a_mode_is_given_a_friction_by_the_form(workbench):
+    """The list of sections had none chosen at first, and no friction."""
+    view = workbench.case
+    assert view.section.value in view.section.options
+    view.add("friction: of mode 2")
+    assert "missing" in view.errors["friction.mode_2.coulomb"].object
+    view.enter("friction.mode_2.coulomb", "12 N")
+    case = workbench.session.case
+    assert case.structure.mode[1].friction == "mode_2"
+    assert case.friction["mode_2"].coulomb == pytest.approx(12.0)
+    assert "friction: of mode 2" not in view.section.options
+    workbench.stability.refresh()
+    assert workbench.stability.diagram.sliders["friction.mode_2.coulomb"].value == 12.0
+
+
 def test_sliders_go_into_the_case(workbench):
     workbench.stability.refresh()
     diagram = workbench.stability.diagram
