@@ -11,7 +11,7 @@ from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
-from chatter.report.console import print_line, print_table
+from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.assembly.assemble import Assembly
@@ -78,7 +78,7 @@ def _print_assembly(found: Assembly) -> None:
         "at [rpm]",
     ]
     print_table(found.file.title or found.file.name, headers, rows)
-    print_line(f"best stick-out {summary['best_stick_out_mm']:.4g} mm by {summary['best_by']}")
+    print_answer(f"best stick-out {summary['best_stick_out_mm']:.4g} mm by {summary['best_by']}")
 
 
 def _shown(value: float | None) -> str:

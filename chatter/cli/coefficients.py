@@ -16,7 +16,13 @@ from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.description.errors import InputError
 from chatter.description.formatting import to_digits
 from chatter.description.units import QuantityError, parse
-from chatter.report.console import print_line, print_notes, print_table, print_written
+from chatter.report.console import (
+    answer_in_report,
+    print_line,
+    print_notes,
+    print_table,
+    print_written,
+)
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
@@ -108,6 +114,8 @@ def _print_coefficients(found: Coefficients) -> None:
     ]
     cuts = number_of_cuts(len(found.measurement.runs))
     title = f"{summary['law']} law, {summary['from']} of {cuts}"
+    values = ", ".join(f"{name} {value} {unit}".rstrip() for name, value, _, unit in rows)
+    answer_in_report(f"{title}: {values}")
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
     if summary["from"] == "mean forces" and summary["holdout_error"]:
         for place, error in found.worst_means().items():

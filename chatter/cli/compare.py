@@ -11,7 +11,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.kinds_of_files import refuse_other_file
 from chatter.io.headings import signal_unit
-from chatter.report.console import print_table
+from chatter.report.console import answer_in_report, print_table
 
 if TYPE_CHECKING:
     from chatter.explain.comparison import Comparison
@@ -37,6 +37,7 @@ def compare(
 
 
 def _print_errors(title: str, result: Comparison) -> None:
+    answer_in_report(result.headline)
     print_checks([one.as_dict() for one in result.checks])
     rows = [
         [

@@ -14,7 +14,7 @@ from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar, running
 from chatter.cli.results import present
 from chatter.description.errors import InputError
-from chatter.report.console import print_line, print_message, print_table
+from chatter.report.console import answer_in_report, print_line, print_message, print_table
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
@@ -155,6 +155,7 @@ def _follow(options_: DetectOptions, case: Case | None) -> None:
 
 
 def _print_detection(found: DetectedChatter) -> None:
+    answer_in_report(found.headline)
     rows = [
         [
             f"{one['from_s']:.2f} to {one['to_s']:.2f}",

@@ -8,7 +8,7 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
-from chatter.report.console import print_json, print_line, print_table
+from chatter.report.console import answer_in_report, print_json, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.first_steps.self_check import CheckedAnswer
@@ -31,7 +31,18 @@ def doctor(json: options.Json = False) -> None:
         raise typer.Exit(1)
 
 
+def _judgement(answers: list[CheckedAnswer]) -> str:
+    wrong = sum(one.right is False for one in answers)
+    asked = sum(one.right is not None for one in answers)
+    return (
+        f"{wrong} of {asked} answers are wrong"
+        if wrong
+        else f"{asked} answers of {asked} are right"
+    )
+
+
 def _print_state(state: dict[str, Any], answers: list[CheckedAnswer]) -> None:
+    answer_in_report(_judgement(answers))
     versions = ", ".join(f"{name} {version}" for name, version in state["libraries"].items())
     print_line(f"Python {state['python']} on {state['system']}; {versions}")
     print_line(f"{state['cores']} cores, {state['threads']} threads")

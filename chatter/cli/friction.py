@@ -14,7 +14,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
 from chatter.description.units import QuantityError, parse
-from chatter.report.console import print_line, print_table
+from chatter.report.console import answer_in_report, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.drive_friction.result import DriveFriction
@@ -126,6 +126,8 @@ def _print_friction(found: DriveFriction) -> None:
     ]
     count = len(found.given.records)
     title = f"{summary['law']} friction {summary['motion']}, {count} record{'s'[: count > 1]}"
+    values = ", ".join(f"{name} {value} {unit}" for name, value, _, unit in rows)
+    answer_in_report(f"{title}: {values}")
     print_table(title, ["parameter", "value", "95 %", "unit"], rows)
     for one in summary["laws"]:
         error = one["holdout_error"]

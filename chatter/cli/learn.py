@@ -24,7 +24,7 @@ from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.formatting import to_digits
 from chatter.description.usual_units import usual_unit
-from chatter.report.console import print_line, print_table
+from chatter.report.console import print_answer, print_line, print_table
 from chatter.report.parameters import read_in
 
 if TYPE_CHECKING:
@@ -108,9 +108,9 @@ def _read_in(one: dict) -> tuple[str, float]:
 def _print_next_cut(summary: dict) -> None:
     chosen = summary["next_cut"]
     if chosen is None:
-        print_line("no cut of the diagram is within the risk; allow more by --risk")
+        print_answer("no cut of the diagram is within the risk; allow more by --risk")
         return
-    print_line(
+    print_answer(
         f"next cut: {chosen['axial_depth_mm']:.3g} mm at {chosen['spindle_speed_rpm']:.0f} rpm, "
         f"stable with a probability of {chosen['probability_of_stability']:.0%}, expected to give "
         f"{chosen['expected_information_bit']:.2g} bit"

@@ -13,7 +13,7 @@ from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import running
 from chatter.cli.results import present
 from chatter.description.errors import InputError
-from chatter.report.console import print_line, print_table
+from chatter.report.console import answer_in_report, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.studies.modal_test import ModalTest
@@ -102,8 +102,16 @@ def _poles(given: list[str] | None) -> list[tuple[float, float]] | None:
     return found or None
 
 
+def _found_modes(frequencies: list[float]) -> str:
+    if not frequencies:
+        return "no mode is found"
+    count = "1 mode" if len(frequencies) == 1 else f"{len(frequencies)} modes"
+    return f"{count}: {', '.join(f'{one:.4g}' for one in frequencies)} Hz"
+
+
 def _print_modes(result: ModalTest) -> None:
     summary = result.summary()
+    answer_in_report(_found_modes([mode["frequency_Hz"] for mode in summary["modes"]]))
     rows = [
         [
             f"{mode['frequency_Hz']:.2f}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,6 +58,16 @@ class Comparison(NotebookResult):
             "runs": [one._asdict() for one in self.errors],
             "signature": self.signature.summary() if self.signature is not None else None,
         }
+
+    @property
+    def headline(self) -> str:
+        """How far the prediction is from the measurement, from the best channel to the worst."""
+        if not self.errors:
+            return "nothing could be predicted"
+        shares = _span([100.0 * one.relative for one in self.errors])
+        told = f"the prediction misses by {shares} % of the signals"
+        multiples = [one.over_noise for one in self.errors if math.isfinite(one.over_noise)]
+        return f"{told}, {_span(multiples)} times their noise" if multiples else told
 
     def sentences(self) -> list[str]:
         """Return what the checks found, and the error of each run and channel."""
@@ -129,3 +140,8 @@ def compare(
         part = parts[one.run, one.channel]
         errors.append(one._replace(noise=part.noise, over_noise=part.over_noise))
     return Comparison(prepared, errors, signature, usable.findings)
+
+
+def _span(values: list[float]) -> str:
+    low, high = (f"{end:.3g}" for end in (min(values), max(values)))
+    return low if low == high else f"{low} to {high}"

@@ -59,6 +59,13 @@ def print_answer(text: str) -> None:
     RESULTS.print(text, markup=False, emoji=False)
 
 
+def answer_in_report(text: str) -> None:
+    """State what answers the question of a report, where the terminal has it in a table."""
+    report = document()
+    if report is not None:
+        report.add_answer(text)
+
+
 def print_line(text: str) -> None:
     """Print a line of a result on stdout."""
     report = document()

@@ -84,11 +84,14 @@ class Document:
             self.answer = sentence
 
     def take_first_sentence_as_answer(self) -> None:
-        """Let the first sentence answer where the command named none."""
-        sentence = next((part for part in self.parts if isinstance(part, str)), None)
-        if not self.answer and sentence is not None:
-            self.parts.remove(sentence)
-            self.answer = sentence
+        """Let a sentence before all tables answer where the command named none.
+
+        One that follows a table says more of what the table has told.
+        """
+        first = next(iter(self.parts), None)
+        if not self.answer and isinstance(first, str):
+            del self.parts[0]
+            self.answer = first
 
     def add_description(self, described: Description) -> None:
         """Take a case or machine with what was patched in it; once."""

@@ -1,6 +1,7 @@
 """`--report` of every command: one page that stands alone, as HTML and as PDF."""
 
 import hashlib
+import math
 import re
 from html.parser import HTMLParser
 
@@ -9,6 +10,8 @@ import typer.main
 
 from chatter import __version__
 from chatter.cli import COMMANDS, program
+from chatter.explain.comparison import Comparison
+from chatter.explain.errors import ChannelError
 from chatter.report.methods import METHODS
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.command_line import chatter_command
@@ -122,6 +125,26 @@ def test_the_verdict_is_the_answer_with_json_too(folder):
     assert silent.stdout.startswith("{")
     for page in ("words.html", "json.html"):
         assert f'<p class="verdict">{answer}</p>' in (folder / page).read_text(encoding="utf-8")
+
+
+def test_what_was_found_is_the_answer_and_not_how_well(folder):
+    """The report on modes answered with its synthesis error, that on a comparison with a note."""
+    chatter_command("modes", *RUNS["modes"], "--report", "modes.html")
+    answers = re.findall(r'class="verdict">([^<]*)<', (folder / "modes.html").read_text())
+    assert len(answers) == 1
+    assert re.fullmatch(r"\d+ modes?: [\d., ]+ Hz", answers[0])
+
+
+def test_a_comparison_answers_with_its_misses():
+    errors = [
+        ChannelError(run="a", channel="Fx", error=1.0, relative=0.12, noise=0.5, over_noise=2.0),
+        ChannelError(run="b", channel="Fx", error=2.0, relative=0.34, noise=0.5, over_noise=4.0),
+    ]
+    found = Comparison(None, errors, None).headline
+    assert found == "the prediction misses by 12 to 34 % of the signals, 2 to 4 times their noise"
+    shares = Comparison(None, [errors[0]._replace(over_noise=math.nan)], None).headline
+    assert shares == "the prediction misses by 12 % of the signals"
+    assert Comparison(None, [], None).headline == "nothing could be predicted"
 
 
 def test_hostile_names_are_inert(folder):
