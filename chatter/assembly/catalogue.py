@@ -17,6 +17,7 @@ import tomlkit
 
 from chatter.assembly.library import Library
 from chatter.description.errors import InputError
+from chatter.description.shop_units import with_decimals
 from chatter.description.toml_document import read_text
 
 #: key of a tool -> names that catalogues give it (DIN 4000-82, ISO 13399 and plain words)
@@ -231,7 +232,7 @@ def _length(where: str, text: str, unit: str, separator: str) -> str:
     """Length with its unit: that behind the number, else that of the heading."""
     cell = _CELL.match(text)
     own = (cell["unit"] or "") if cell else ""
-    value = _number(where, cell["number"] if cell else text, separator)
+    value = _number(where, with_decimals(cell["number"] if cell else text), separator)
     unit = _UNITS.get(own.lower(), own) or unit
     if not unit:
         name = where.rpartition(": ")[2]

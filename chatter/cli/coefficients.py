@@ -26,6 +26,7 @@ from chatter.report.console import (
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
+    from chatter.description.usual_units import UsualUnit
 
 #: directions that share an exponent where there is one
 _ALL = 3
@@ -135,7 +136,7 @@ def _print_coefficients(found: Coefficients) -> None:
     if summary["oblique"] is not None:
         _print_oblique(summary["oblique"])
     if summary["not_fitted"]:
-        _print_predicted(summary["not_fitted"])
+        _print_predicted(summary["not_fitted"], found.units.force)
     for note in summary["notes"]:
         print_notes([note])
 
@@ -157,14 +158,18 @@ def _print_oblique(one: dict[str, Any]) -> None:
         print_line("the oblique law does not hold: the axial force is not that of this helix")
 
 
-def _print_predicted(cuts: dict[str, Any]) -> None:
+def _print_predicted(cuts: dict[str, Any], force: UsualUnit) -> None:
     print_table(
         "cuts that were not fitted",
-        ["run", "channel", "mean [N]", "predicted", "peak-to-peak [N]", "predicted"],
+        ["run", "channel", f"mean [{force.name}]", "predicted", f"peak-to-peak [{force.name}]",
+         "predicted"],
         [
             [
-                run, channel, f"{one['mean_N']:.1f}", f"{one['mean_predicted_N']:.1f}",
-                f"{one['peak_to_peak_N']:.0f}", f"{one['peak_to_peak_predicted_N']:.0f}",
+                run, channel,
+                f"{force.factor * one['mean_N']:.1f}",
+                f"{force.factor * one['mean_predicted_N']:.1f}",
+                f"{force.factor * one['peak_to_peak_N']:.0f}",
+                f"{force.factor * one['peak_to_peak_predicted_N']:.0f}",
             ]
             for run, channels in cuts.items()
             for channel, one in channels.items()

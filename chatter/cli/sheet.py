@@ -38,12 +38,14 @@ def sheet(
 
 
 def _print_sheet(found: Sheet) -> None:
-    from chatter.operator_sheet.workbook import HEADERS, rows_of
+    from chatter.description.unit_system import units_of
+    from chatter.operator_sheet.workbook import headers_in, rows_of
 
     for one in found.cases:
-        rows = rows_of(one)
+        units = units_of(one.case)
+        headers, rows = headers_in(units), rows_of(one, units)
         texts = [["" if row[i] is None else f"{row[i]}" for i in _COLUMNS] for row in rows]
-        print_table(rows[0][0], [HEADERS[i] for i in _COLUMNS], texts)
+        print_table(rows[0][0], [headers[i] for i in _COLUMNS], texts)
         if one.variation is not None:
             print_line(
                 f"{one.case.name}: spindle-speed variation of {one.variation.amplitude:.0%} at "

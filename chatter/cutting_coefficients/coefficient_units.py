@@ -1,4 +1,11 @@
 """Units of coefficients as they are written."""
 
-#: by the last letter of a key: unit in [material], and what makes it of SI
-UNITS = {"c": ("MPa", 1e-6), "e": ("N/mm", 1e-3)}
+from __future__ import annotations
+
+from chatter.description.unit_system import UnitSystem
+from chatter.description.usual_units import UsualUnit
+
+
+def unit_of(key: str, units: UnitSystem) -> UsualUnit:
+    """Unit of a coefficient, cutting or of the edge by the last letter of its key."""
+    return {"c": units.pressure, "e": units.line_force}[key[-1]]

@@ -18,6 +18,7 @@ import tomlkit
 
 from chatter.description.arrays import Array
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import METRIC, UnitSystem
 from cutting.force.oblique import oblique_cutting_coefficients
 
 #: first values: shear stress over the tangential coefficient, friction angle (rad)
@@ -42,6 +43,8 @@ class ObliqueFit:
         Normal rake and helix, rad.
     chi_square : float
         What it leaves of the linear coefficients, of one degree of freedom.
+    units : UnitSystem
+        In which the numbers are written.
     """
 
     values: Array
@@ -49,6 +52,7 @@ class ObliqueFit:
     rake: float
     inclination: float
     chi_square: float
+    units: UnitSystem = METRIC
 
     @property
     def holds(self) -> bool:
@@ -71,8 +75,12 @@ class ObliqueFit:
         }
 
     def _rows(self) -> list[dict[str, Any]]:
-        units = [("shear_stress", 1e-6, "MPa"), ("friction_angle", math.degrees(1.0), "deg")]
-        units += [(name, 1e-3, "N/mm") for name in _EDGE]
+        pressure, line_force = self.units.pressure, self.units.line_force
+        units = [
+            ("shear_stress", pressure.factor, pressure.name),
+            ("friction_angle", math.degrees(1.0), "deg"),
+        ]
+        units += [(name, line_force.factor, line_force.name) for name in _EDGE]
         deviations = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
         return [
             {
@@ -110,7 +118,9 @@ def merchant_shear_angle(friction: float, rake: float) -> float:
     return 0.25 * math.pi - 0.5 * (friction - rake)
 
 
-def oblique_fit(linear: Array, covariance: Array, rake: float, inclination: float) -> ObliqueFit:
+def oblique_fit(
+    linear: Array, covariance: Array, rake: float, inclination: float, units: UnitSystem = METRIC
+) -> ObliqueFit:
     """Fit the oblique law to the coefficients (6,) of a linear one, SI, by their covariance."""
     deviation = np.sqrt(np.diag(covariance))
     correlation = covariance / np.outer(deviation, deviation)
@@ -131,4 +141,4 @@ def oblique_fit(linear: Array, covariance: Array, rake: float, inclination: floa
     high = np.array([np.inf, _FRICTION[1], np.inf, np.inf, np.inf])
     found = scipy.optimize.least_squares(left, first, bounds=(low, high), x_scale="jac")
     spread = np.linalg.pinv(found.jac.T @ found.jac) * np.outer(size, size)
-    return ObliqueFit(found.x * size, spread, rake, inclination, 2.0 * float(found.cost))
+    return ObliqueFit(found.x * size, spread, rake, inclination, 2.0 * float(found.cost), units)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ import numpy as np
 import tomlkit
 
 from chatter.compile.cutter import cutter_of
-from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.coefficient_units import unit_of
 from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import DIRECTION_NAMES
@@ -26,6 +27,7 @@ from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import (
@@ -130,7 +132,7 @@ class Coefficients(NotebookResult):
                 "determine; forces along x, y and z of two feeds do"
             )
         helix = cutter_of(self.measurement.case).helix[0]
-        return replace(self, oblique=oblique_fit(*linear, rake, helix))
+        return replace(self, oblique=oblique_fit(*linear, rake, helix, self.units))
 
     def _linear_fit(self) -> tuple[Array, Array] | None:
         """Coefficients (6,) of the linear law and their covariance, by what the answer is from."""
@@ -138,6 +140,11 @@ class Coefficients(NotebookResult):
             return self.waveforms.linear_fit()
         linear = next((one for one in self.fits if one.law.name == "linear"), None)
         return None if linear is None else (linear.values, linear.covariance)
+
+    @cached_property
+    def units(self) -> UnitSystem:
+        """Units of the case: coefficients are written in them."""
+        return units_of(self.measurement.case)
 
     @property
     def _cases(self) -> dict[str, Case]:
@@ -312,10 +319,11 @@ class Coefficients(NotebookResult):
         tangential = float(self.material.get("Ktc", 0.0))  # type: ignore[arg-type]
         if tangential <= 0.0 or _SOFTEST <= tangential <= _HARDEST:
             return []
+        shown = self.units.pressure
         return [
-            f"Ktc is {1e-6 * tangential:.3g} MPa, where what is milled has {1e-6 * _SOFTEST:g} to "
-            f"{1e-6 * _HARDEST:g} MPa: check the unit of the forces in the heading, the feed and "
-            "the axial depth"
+            f"Ktc is {shown.factor * tangential:.3g} {shown.name}, where what is milled has "
+            f"{shown.factor * _SOFTEST:.3g} to {shown.factor * _HARDEST:.3g} {shown.name}: "
+            "check the unit of the forces in the heading, the feed and the axial depth"
         ]
 
     def _of_feeds_not_stated(self) -> list[str]:
@@ -324,11 +332,16 @@ class Coefficients(NotebookResult):
         silent = [run.name for run in runs if _FEEDS.isdisjoint(run.overrides)]
         if not silent or len(silent) == len(runs):
             return []
-        feed = f"{1e3 * case.get('cut.feed_per_tooth'):.4g} mm a tooth"
+        feed = f"{self._length(case.get('cut.feed_per_tooth'))} a tooth"
         return [
             f"{', '.join(silent)}: measurement.toml states no feed, as of the other runs; that of "
             f"the case is taken, {feed}"
         ]
+
+    def _length(self, value: float, *others: float) -> str:
+        """Lengths, m, in the unit of the case: "0.05 to 0.2 mm"."""
+        unit = self.units.length
+        return " to ".join(f"{one * unit.factor:.4g}" for one in (value, *others)) + f" {unit.name}"
 
     def _notes_of_waveforms(self) -> list[str]:
         if self.linear_law_holds:
@@ -392,9 +405,9 @@ class Coefficients(NotebookResult):
         return [
             {
                 "name": key,
-                "value": float(value) * UNITS[key[-1]][1],
-                "standard_deviation": float(deviation) * UNITS[key[-1]][1],
-                "unit": UNITS[key[-1]][0],
+                "value": float(value) * unit_of(key, self.units).factor,
+                "standard_deviation": float(deviation) * unit_of(key, self.units).factor,
+                "unit": unit_of(key, self.units).name,
             }
             for key, value, deviation in zip(fit.law.keys, fit.values, fit.deviations, strict=False)
         ]
@@ -469,7 +482,7 @@ class Coefficients(NotebookResult):
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
         folder = self.measurement.folder.resolve().name
         source = f"{self.origin} of {number_of_cuts(len(feeds))}, {folder}"
-        validity = f"feeds of {1e3 * min(feeds):.4g} to {1e3 * max(feeds):.4g} mm a tooth"
+        validity = f"feeds of {self._length(min(feeds), max(feeds))} a tooth"
         return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 
     def plot(self) -> Figure:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.coefficient_units import unit_of
 from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import LAWS, REFERENCE_CHIP
@@ -23,6 +23,7 @@ from chatter.cutting_coefficients.waveform_fit import WaveformFit
 from chatter.cutting_coefficients.waveform_model import RUNOUT_UNIT, Complex
 from chatter.description.arrays import Array
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import METRIC, UnitSystem, units_of
 from chatter.explain.measurement import Measurement
 
 #: share of the varying force above which a rigid tool is no model of the cut
@@ -41,10 +42,13 @@ class Waveforms:
         Of all laws, the best first.
     holdout : tuple of PredictedCut
         Each cut by the others; empty of fewer than three.
+    units : UnitSystem
+        In which coefficients are written.
     """
 
     fits: tuple[WaveformFit, ...]
     holdout: tuple[PredictedCut, ...] = ()
+    units: UnitSystem = METRIC
 
     @property
     def kept(self) -> WaveformFit:
@@ -106,7 +110,7 @@ class Waveforms:
         names = fit.model.names(fit.averages)
         return {
             "law": fit.model.law.name,
-            "coefficients": _coefficients(fit),
+            "coefficients": _coefficients(fit, self.units),
             "exponents": [
                 {
                     "of": fit.model.law.directions_of(number),
@@ -166,9 +170,15 @@ class Waveforms:
         names = kept.model.names(kept.averages)
         return {
             "law": kept.model.law.name,
-            "coefficients": _coefficients(kept),
+            "coefficients": _coefficients(kept, self.units),
             "exponents": _of_kind(kept, names, "exponent", 1.0, ""),
-            "runout": _of_kind(kept, names, "runout", 1e6 * RUNOUT_UNIT, "um"),
+            "runout": _of_kind(
+                kept,
+                names,
+                "runout",
+                RUNOUT_UNIT * self.units.runout.factor,
+                self.units.runout.name,
+            ),
             "helix": _of_kind(kept, names, "helix", math.degrees(1.0), "deg"),
             "start_angles": _of_kind(kept, names, "start", math.degrees(1.0), "deg"),
             "resonances": _resonances(kept),
@@ -203,7 +213,7 @@ class Waveforms:
         """Keys and values of [material], by the best law that a case file may have."""
         fit = self.of_case
         row: dict[str, Any] = {"law": fit.model.law.law}
-        for one in _coefficients(fit):
+        for one in _coefficients(fit, self.units):
             row[one["name"]] = (
                 f"{one['value']:.5g} +- {to_digits(one['standard_deviation'])} {one['unit']}"
             )
@@ -246,7 +256,8 @@ def waveforms(measurement: Measurement) -> Waveforms:
     known = force_channels(measurement, measurement.runs[0])
     unsigned = [name for name, (_, has_sign) in known.items() if not has_sign]
     has_free_helix = "helix" not in measurement.case.tool.model_fields_set
-    return Waveforms(tuple(waveform_fits(averages, unsigned, has_free_helix)))
+    fits = waveform_fits(averages, unsigned, has_free_helix)
+    return Waveforms(tuple(fits), units=units_of(measurement.case))
 
 
 def _left(average: RevolutionAverage, residual: Complex) -> list[float]:
@@ -260,13 +271,13 @@ def _cuts(fit: WaveformFit) -> bool:
     return bool(np.all(fit.coefficients[fit.model.law.cutting] >= 0.0))
 
 
-def _coefficients(fit: WaveformFit) -> list[dict[str, Any]]:
+def _coefficients(fit: WaveformFit, units: UnitSystem) -> list[dict[str, Any]]:
     return [
         {
             "name": key,
-            "value": float(value) * UNITS[key[-1]][1],
-            "standard_deviation": float(deviation) * UNITS[key[-1]][1],
-            "unit": UNITS[key[-1]][0],
+            "value": float(value) * unit_of(key, units).factor,
+            "standard_deviation": float(deviation) * unit_of(key, units).factor,
+            "unit": unit_of(key, units).name,
         }
         for key, value, deviation in zip(
             fit.model.law.keys, fit.coefficients, fit.deviations, strict=True

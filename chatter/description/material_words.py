@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from chatter.description.law_section import FORCE_LAWS
-from chatter.description.usual_units import of_dimension
+from chatter.description.unit_system import METRIC, UnitSystem, units_of
+from chatter.description.usual_units import UsualUnit, of_dimension
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,16 +16,21 @@ if TYPE_CHECKING:
     from cutting.material.row import MaterialRow
 
 
-def values_in_words(law: str, values: Mapping[str, float]) -> str:
+def values_in_words(law: str, values: Mapping[str, float], units: UnitSystem = METRIC) -> str:
     """Law and its coefficients, SI, in units that people read; those that are zero left out."""
     parts = []
     for key in FORCE_LAWS[law].keys:
         value = values.get(key.name)
         if not value:
             continue
-        unit = of_dimension(key.dimension)
+        unit = _unit_of(key.dimension, units)
         parts.append(f"{key.name} {value * unit.factor:.4g} {unit.name}".rstrip())
     return f"{FORCE_LAWS[law].label}, {', '.join(parts)}"
+
+
+def _unit_of(dimension: str, units: UnitSystem) -> UsualUnit:
+    own = {"pressure": units.pressure, "line_force": units.line_force, "length": units.length}
+    return own.get(dimension) or of_dimension(dimension)
 
 
 def coefficients_in_words(case: Case) -> str | None:
@@ -33,7 +39,7 @@ def coefficients_in_words(case: Case) -> str | None:
     if material is None:
         return None
     named = f"{material.row_name}: " if material.name else ""
-    return f"coefficients: {named}{values_in_words(material.law, material.values)}"
+    return f"coefficients: {named}{values_in_words(material.law, material.values, units_of(case))}"
 
 
 def notes_on_material(case: Case) -> list[str]:

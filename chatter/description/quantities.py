@@ -18,13 +18,15 @@ from chatter.description.ranges import stated_ends
 #: unit in which people state what a bare number states in SI, by dimension
 _MEANT = {"angle": "deg", "length": "mm", "number": "%", "pressure": "MPa"}
 
+#: a decimal number, or a fraction as shops write sizes
+_NUMBER = rf"({units.NUMBER}|([0-9]+[ -])?[0-9]+/[0-9]+|[0-9]*[\u00bc-\u00be])"
 #: what an editor can check: a number, perhaps a deviation, and a unit unless it is zero
 _TEXT_PATTERN = (
-    rf"^\s*({units.NUMBER}(\s*(\+-|\+/-|±)\s*{units.NUMBER})?\s*[A-Za-z%°\u00b5\u03bc(1].*"
+    rf"^\s*({_NUMBER}(\s*(\+-|\+/-|±)\s*{_NUMBER})?\s*[A-Za-z%°\"\u00b5\u03bc(1].*"
     r"|[+-]?0+\.?0*)\s*$"
 )
 #: of a range as text: FROM..TO, a unit behind TO, perhaps :COUNT
-RANGE_PATTERN = rf"^\s*{units.NUMBER}.*\.\.\s*{units.NUMBER}\s*[A-Za-z%°\u00b5\u03bc].*$"
+RANGE_PATTERN = rf"^\s*{_NUMBER}.*\.\.\s*{_NUMBER}\s*[A-Za-z%°\"\u00b5\u03bc].*$"
 
 
 @dataclass(frozen=True)

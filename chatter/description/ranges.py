@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from chatter.description.shop_units import with_decimals
 from chatter.description.units import NUMBER
 
 _END = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*")
@@ -23,7 +24,7 @@ def stated_ends(text: str) -> list[str] | None:
 
     "10..200 Hz" is meant as 10 Hz..200 Hz.
     """
-    ends = [_END.fullmatch(end) for end in text.split("..")]
+    ends = [_END.fullmatch(end) for end in with_decimals(text).split("..")]
     if len(ends) != 2 or ends[0] is None or ends[1] is None:
         return None
     first, last = ends

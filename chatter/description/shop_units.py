@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import unicodedata
+from fractions import Fraction
 
 #: words for a turn: Umdrehung, tour, giro, vuelta, obrót, otáčka
 _TURN = (
@@ -42,9 +44,18 @@ _OF_TOOTH = re.compile(r"(?P<length>\w+)\s*/\s*(?:tooth|teeth|z|Z|flute|Zahn|den
 _OF_TURN = re.compile(r"(?P<length>\w+)\s*/\s*(?:rev|r|U|tr|turn)")
 _GROUPED = re.compile(r"[+-]?[0-9]{1,3}(?:[' \u2019\u00a0\u202f][0-9]{3})+(?![0-9])")
 _COMMA_OF_THREE = re.compile(r"\s*([+-]?[1-9][0-9]{0,2}),([0-9]{3})\s*([^0-9,.]*)")
-_FRACTION = re.compile(r"\s*(?P<top>[0-9]+)\s*/\s*(?P<bottom>[0-9]+)\s*(?P<unit>[A-Za-z\"]+)\s*")
+#: "1/2", "1 1/4", "1-1/4", before a unit
+_FRACTION = re.compile(
+    r"(?<![0-9,/*^A-Za-z])(?<!(?<!\.)\.)(?<![eE][+-])"  # behind "..", not within a number or unit
+    r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)(?:\s+|\s*-\s*))?(?P<top>[0-9]+)\s*/\s*(?P<bottom>[0-9]+)"
+    r"(?=\s*(?:[A-Za-zµμ\"″”]|\+-|\+/-|±|\.\.|$))"
+)
+#: one character with a fraction: ½, ¼, ⅜, with the whole number before it
+_VULGAR = re.compile(r"([0-9]?)\s*([¼½¾⅐-⅞])")
+_FRACTION_SLASH = "\u2044"
+#: marks of an inch behind a number
+_INCH_MARK = re.compile(r"(?<=[0-9.])\s*(?:\"|″|”|'')")
 _LENGTHS = ("mm", "um", "m", "in", "inch")
-_INCHES = ("in", "inch", '"')
 
 
 def speed_of_shop(unit: str) -> str | None:
@@ -82,11 +93,28 @@ def advice_on_number(given: str) -> str | None:
     if comma:
         whole, part, unit = comma.groups()
         return f'has a comma; write "{whole}{part} {unit}", or "{whole}.{part} {unit}"'
-    fraction = _FRACTION.fullmatch(given)
-    if fraction and int(fraction["bottom"]):
-        value = f"{int(fraction['top']) / int(fraction['bottom']):g}"
-        unit = "inch" if fraction["unit"] in _INCHES else fraction["unit"]
-        return f'is a fraction; write "{value} {unit}"'
-    if given.strip().endswith('"'):
-        return f'has the unit "; write "{given.strip()[:-1].strip()} inch"'
     return None
+
+
+def with_decimals(text: str) -> str:
+    """Text whose fractions are decimal numbers: ``1 1/4 in`` is ``1.25 in``, ``½"`` ``0.5 in``.
+
+    A fraction needs a unit behind it, or another end of a range; whatever else stands there stays.
+    """
+    if "/" not in text and not _INCH_MARK.search(text) and not _VULGAR.search(text):
+        return text
+    text = _INCH_MARK.sub(" in", _VULGAR.sub(_spelt_out, text))
+    return _FRACTION.sub(_decimal, text)
+
+
+def _spelt_out(found: re.Match[str]) -> str:
+    whole, part = found.groups()
+    return f"{whole} {unicodedata.normalize('NFKC', part).replace(_FRACTION_SLASH, '/')}".strip()
+
+
+def _decimal(found: re.Match[str]) -> str:
+    bottom = int(found["bottom"])
+    if not bottom:
+        return found[0]
+    value = int(found["whole"] or 0) + Fraction(int(found["top"]), bottom)
+    return f"{found['sign']}{float(value):.15g}"

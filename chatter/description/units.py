@@ -22,6 +22,7 @@ from chatter.description.shop_units import (
     advice_on_number,
     speed_of_any,
     speed_of_shop,
+    with_decimals,
 )
 
 if TYPE_CHECKING:
@@ -324,7 +325,7 @@ def parse(given: Any, dimension: str) -> Quantity:
     Parameters
     ----------
     given : str, int or float
-        ``"20 mm"``, ``"1650 +- 80 MPa"``, ``0.02``.
+        ``"20 mm"``, ``"1650 +- 80 MPa"``, ``"1 1/4 in"``, ``0.02``.
     dimension : str
         Key of `DIMENSIONS`.
 
@@ -343,10 +344,11 @@ def parse(given: Any, dimension: str) -> Quantity:
 @lru_cache(maxsize=4096)
 def _parsed(given: str, dimension: str) -> Quantity:
     """Read a quantity from text; a case that is patched is read again and again."""
-    match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
+    text = with_decimals(given) if len(given) <= _LONGEST_TEXT else ""
+    match = _QUANTITY.match(text)
     if match is None:
         raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")
-    hint = advice_on_number(given) or advice(match["value"], match["unit"], dimension)
+    hint = advice_on_number(text) or advice(match["value"], match["unit"], dimension)
     if hint:
         raise QuantityError(f"{formatted(given)} {hint}")
     if _DECIMAL_COMMA.match(given):

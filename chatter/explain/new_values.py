@@ -10,6 +10,7 @@ import tomlkit
 
 from chatter.description.case import Case
 from chatter.description.path import Step, field_at, join_path, parse_path
+from chatter.description.shop_units import with_decimals
 from chatter.description.units import NUMBER, unit_factor
 from chatter.description.usual_units import of_dimension
 
@@ -44,7 +45,7 @@ def in_declared_unit(declared: Case, path: str, value: float) -> str:
     for step in steps:
         there = isinstance(written, Mapping) and step in written
         written = written[step] if there else None
-    match = _QUANTITY.fullmatch(written) if isinstance(written, str) else None
+    match = _QUANTITY.fullmatch(with_decimals(written)) if isinstance(written, str) else None
     dimension = field_at(Case, steps).dimension
     unit = (match["unit"] if match else None) or _unit(dimension, value)
     return f"{value / unit_factor(unit, dimension):.{_DIGITS}g} {unit}".strip()
@@ -88,7 +89,7 @@ def _unit(dimension: str, value: float) -> str:
 
 def _with_fewer_digits(text: str) -> str:
     """Quantity with six digits; with a deviation, as it is."""
-    match = _QUANTITY.fullmatch(text)
+    match = _QUANTITY.fullmatch(with_decimals(text))
     if match is None:
         return text
     return f"{float(match['number']):.{_DIGITS}g} {match['unit'] or ''}".strip()

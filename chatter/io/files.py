@@ -7,6 +7,8 @@ from dynamics.frf.container import MeasurementError
 #: largest file read, bytes: a record of ten million samples is smaller
 LARGEST_FILE = 1024**3
 
+#: share of letters that are Latin
+_MOSTLY = 0.95
 _BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
@@ -46,6 +48,9 @@ def decoded(raw: bytes, path: Path) -> str:
     for mark, encoding in _BYTE_ORDER_MARKS.items():
         if raw.startswith(mark):
             return raw.decode(encoding, errors="replace")
+    wide = _of_two_bytes(raw[:4096])
+    if wide is not None:
+        return raw.decode(wide, errors="replace")
     control = sum(raw[:4096].count(byte) for byte in range(32) if byte not in b"\t\n\r\f\x1a")
     if b"\0" in raw or control > 0.01 * min(len(raw), 4096):
         raise MeasurementError(f"{path}: is not text (binary content)")
@@ -53,6 +58,16 @@ def decoded(raw: bytes, path: Path) -> str:
         return raw.decode("utf-8")
     except UnicodeDecodeError:
         return raw.decode("cp1252", errors="replace")
+
+
+def _of_two_bytes(raw: bytes) -> str | None:
+    """Encoding of text in UTF-16 without its mark: every second byte of Latin letters is zero."""
+    half = len(raw) // 2
+    for first, encoding in ((1, "utf-16-le"), (0, "utf-16-be")):
+        zeros = raw[first::2].count(0)
+        if half > 1 and zeros > _MOSTLY * half and raw[1 - first :: 2].count(0) == 0:
+            return encoding
+    return None
 
 
 def read_lines(path: Path) -> list[str]:

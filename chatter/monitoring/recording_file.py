@@ -42,7 +42,9 @@ _NAMES = {
     "current": r"(i\d*$|cur)",
     "power": r"(p\d*$|pow)",
 }
-_TIME = re.compile(r"\s*(.*\.)?(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
+_TIME = re.compile(
+    r"\s*(.*\.)?(t|time|zeit|elapsed.*|x[_ ]?value|(time|zeit)\s+\d.*)\s*", re.IGNORECASE
+)
 #: names of a tacho of one pulse a revolution, and of any
 _ONCE = re.compile(r"\s*(once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.IGNORECASE)
 _TACHO = re.compile(rf"\s*(tacho.*|trigger)\s*|{_ONCE.pattern}", re.IGNORECASE)
@@ -101,7 +103,7 @@ def read_recording(
 def _recording(
     path: Path, table: Table, wanted: Sequence[str], sampling_rate: float | None
 ) -> Recording:
-    table = replace(table, columns=tuple(map(_with_unit, table.columns)))
+    table = replace(table, columns=_of_own_names(list(map(_with_unit, table.columns))))
     numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
     time = _time(path, table, numbers, sampling_rate)
     pulses = next((one.name for one in table.columns if _is_tacho(one)), None)
@@ -136,6 +138,17 @@ def _with_unit(column: Column) -> Column:
         return column
     name, unit = split_trace_heading(column.heading)
     return replace(column, heading=f"{name} [{unit}]") if unit else column
+
+
+def _of_own_names(columns: Sequence[Column]) -> tuple[Column, ...]:
+    """Columns of which those of a name that stands before have their number behind it."""
+    found: list[Column] = []
+    for number, column in enumerate(columns, start=1):
+        if column.name in {one.name for one in found}:
+            unit = f" [{column.unit}]" if column.unit else ""
+            column = replace(column, heading=f"{column.name} {number}{unit}")
+        found.append(column)
+    return tuple(found)
 
 
 def _is_tacho(column: Column) -> bool:

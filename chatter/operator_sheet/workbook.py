@@ -8,16 +8,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.errors import InputError
+from chatter.description.unit_system import INCH, METRIC, UnitSystem, units_of
+from chatter.description.usual_units import UsualUnit
 from chatter.operator_sheet.cuts import CaseCuts
 
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
 
-HEADERS = (
-    "case", "cut", "verdict", "spindle speed [rpm]", "cutting speed [m/min]", "axial depth [mm]",
-    "width of cut [mm]", "feed per tooth [mm]", "feed rate [mm/min]", "limit [mm]", "margin [%]",
-    "removal rate [cm^3/min]",
-)  # fmt: skip
+#: digits behind the point of lengths, feeds a tooth and rates: an inch has more than a millimetre
+_DIGITS = {METRIC: (3, 4, 1, 0, 2), INCH: (4, 5, 0, 2, 3)}
 _WIDTH_OF_COLUMN = 14
 
 
@@ -35,12 +34,13 @@ def workbook_of(cases: Sequence[CaseCuts]) -> bytes:
     book = openpyxl.Workbook()
     table = book.active
     table.title = "cuts"
-    _append(table, HEADERS)
+    units = units_of_all(cases)
+    _append(table, headers_in(units))
     for one in cases:
-        for row in rows_of(one):
+        for row in rows_of(one, units):
             _append(table, row)
     for place, one in enumerate(cases, start=1):
-        _append_limits(book.create_sheet(f"limits {place}"), one)
+        _append_limits(book.create_sheet(f"limits {place}"), one, units.length)
     for worksheet in book.worksheets:
         worksheet.freeze_panes = "A2"
         for column in worksheet.columns:
@@ -50,35 +50,58 @@ def workbook_of(cases: Sequence[CaseCuts]) -> bytes:
     return content.getvalue()
 
 
-def rows_of(one: CaseCuts) -> list[tuple[Any, ...]]:
-    """Rows of the cuts of a case, under `HEADERS`."""
+def units_of_all(cases: Sequence[CaseCuts]) -> UnitSystem:
+    """Units of a table of several cases: inches where all are in inches."""
+    return INCH if all(units_of(one.case) is INCH for one in cases) else METRIC
+
+
+def headers_in(units: UnitSystem) -> tuple[str, ...]:
+    """Heading of `rows_of`."""
+    length = units.length.name
+    return (
+        "case", "cut", "verdict", "spindle speed [rpm]",
+        f"cutting speed [{units.cutting_speed.name}]", f"axial depth [{length}]",
+        f"width of cut [{length}]", f"feed per tooth [{units.feed_per_tooth.name}]",
+        f"feed rate [{units.feed_rate.name}]", f"limit [{length}]", "margin [%]",
+        f"removal rate [{units.removal_rate.name}]",
+    )  # fmt: skip
+
+
+def rows_of(one: CaseCuts, units: UnitSystem) -> list[tuple[Any, ...]]:
+    """Rows of the cuts of a case, under `headers_in`."""
     title = one.case.title or one.case.name
+    lengths, per_tooth, speed, rate, removed = _DIGITS[units]
+
+    def length(value: float | None, digits: int = lengths) -> float | None:
+        return _shown(value, METRIC.length, units.length, digits)
+
     return [
         (
             title,
             cut.name,
             cut.verdict,
             "any" if cut.spindle_speed is None else round(cut.spindle_speed),
-            _rounded(cut.cutting_speed, 1),
-            _rounded(cut.axial_depth, 3),
-            _rounded(cut.width_of_cut, 3),
-            _rounded(cut.feed_per_tooth, 4),
-            None if cut.feed_rate is None else round(cut.feed_rate),
-            _rounded(cut.limit, 3),
+            _shown(cut.cutting_speed, METRIC.cutting_speed, units.cutting_speed, speed),
+            length(cut.axial_depth),
+            length(cut.width_of_cut),
+            length(cut.feed_per_tooth, per_tooth),
+            _shown(cut.feed_rate, METRIC.feed_rate, units.feed_rate, rate),
+            length(cut.limit),
             None if cut.margin is None else round(100.0 * cut.margin, 1),
-            _rounded(cut.removal_rate, 2),
+            _shown(cut.removal_rate, METRIC.removal_rate, units.removal_rate, removed),
         )
         for cut in one.cuts
     ]
 
 
-def _append_limits(worksheet: Worksheet, one: CaseCuts) -> None:
-    _append(worksheet, ("spindle speed [rpm]", "limit [mm]", "chatter frequency [Hz]"))
+def _append_limits(worksheet: Worksheet, one: CaseCuts, length: UsualUnit) -> None:
+    heading = "spindle speed [rpm]", f"limit [{length.name}]", "chatter frequency [Hz]"
+    _append(worksheet, heading)
     limits = one.diagram.limits
     for speed, depth, frequency in zip(
         one.diagram.axis.values, limits.critical_depth, limits.chatter_frequency, strict=True
     ):
-        _append(worksheet, (float(speed), _finite(1e3 * depth), _finite(frequency)))
+        _append(worksheet, (float(speed), _finite(length.factor * depth), _finite(frequency)))
 
 
 def _append(worksheet: Worksheet, row: Sequence[Any]) -> None:
@@ -89,8 +112,14 @@ def _append(worksheet: Worksheet, row: Sequence[Any]) -> None:
             cell.data_type = "s"
 
 
-def _rounded(value: float | None, digits: int) -> float | None:
-    return None if value is None else round(value, digits)
+def _shown(
+    value: float | None, metric: UsualUnit, unit: UsualUnit, digits: int
+) -> float | int | None:
+    """A value in a metric unit in another one, with so many digits behind the point."""
+    if value is None:
+        return None
+    found = value if unit == metric else value / metric.factor * unit.factor
+    return round(found, digits) if digits else round(found)
 
 
 def _finite(value: float) -> float | None:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 #: points of a curve over the feed
 _POINTS = 40
+_FEED = "cut.feed_per_tooth"
 
 
 def plot_coefficients(found: Coefficients) -> Figure:
@@ -36,10 +37,11 @@ def plot_coefficients(found: Coefficients) -> Figure:
 def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
     own = [one for one in found.means if one.channel == name]
     cases = {run.name: run.of(found.measurement.case) for run in found.measurement.runs}
-    feeds = np.array([1e3 * cases[one.run].cut.feed_per_tooth for one in own])
-    values = [one.value - found.offset_of(one) for one in own]
+    length, force = found.units.feed_per_tooth, found.units.force
+    feeds = np.array([length.factor * cases[one.run].cut.feed_per_tooth for one in own])
+    values = [force.factor * (one.value - found.offset_of(one)) for one in own]
     axes.errorbar(
-        feeds, values, yerr=[2.0 * one.deviation for one in own], fmt="o",
+        feeds, values, yerr=[2.0 * force.factor * one.deviation for one in own], fmt="o",
         color=style.BLUE, capsize=3.0, label="measured, +- 2 standard deviations",
     )  # fmt: skip
     if differ_by_feed_alone(list(cases.values())):
@@ -47,17 +49,17 @@ def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
         any_case = next(iter(cases.values()))
         for fit, colour, label in _shown(found):
             forces = [
-                fit.mean_forces_of(own[:1], any_case.patch({"cut.feed_per_tooth": 1e-3 * feed}))[0]
-                for feed in line
+                force.factor * fit.mean_forces_of(own[:1], any_case.patch({_FEED: feed}))[0]
+                for feed in line / length.factor
             ]
             axes.plot(line, forces, color=colour, label=label)
     else:
         law = found.answer_law
-        fitted = [law.mean_forces_of([one], cases[one.run])[0] for one in own]
+        fitted = [force.factor * law.mean_forces_of([one], cases[one.run])[0] for one in own]
         axes.plot(feeds, fitted, "x", color=style.RED, label="fitted")
     axes.set_title(name, loc="left")
-    axes.set_xlabel("feed per tooth [mm]")
-    axes.set_ylabel("mean force [N]")
+    axes.set_xlabel(f"feed per tooth [{length.name}]")
+    axes.set_ylabel(f"mean force [{force.name}]")
     axes.set_xlim(left=0.0)
 
 

@@ -11,23 +11,34 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from chatter.description.material_words import coefficients_in_words
-from chatter.operator_sheet.workbook import rows_of
+from chatter.description.unit_system import METRIC, UnitSystem, units_of
+from chatter.operator_sheet.workbook import rows_of, units_of_all
 from chatter.plots import style
 from chatter.plots.stability_diagram import draw_limits
 from chatter.stability.pockets import SPEED_MARGIN
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from chatter.description.usual_units import UsualUnit
     from chatter.operator_sheet.cuts import CaseCuts
     from chatter.operator_sheet.sheet import Sheet
 
 _A4 = 8.27, 11.69
-_HEADERS = (
-    "cut", "verdict", "speed\n[rpm]", "vc\n[m/min]", "ap\n[mm]", "ae\n[mm]", "fz\n[mm]",
-    "feed\n[mm/min]", "limit\n[mm]", "margin\n[%]", "removal\n[cm³/min]",
-)  # fmt: skip
+_COLUMNS = 11
 _FONT = 8.5
 #: of the page, inch
 _MARGIN = 0.4
+
+
+def _headers(units: UnitSystem) -> tuple[str, ...]:
+    length = units.length.name
+    return (
+        "cut", "verdict", "speed\n[rpm]", f"vc\n[{units.cutting_speed.name}]", f"ap\n[{length}]",
+        f"ae\n[{length}]", f"fz\n[{units.feed_per_tooth.name}]",
+        f"feed\n[{units.feed_rate.name}]", f"limit\n[{length}]", "margin\n[%]",
+        f"removal\n[{units.removal_rate.name.replace('^3', '³')}]",
+    )  # fmt: skip
 
 
 def write_pages(sheet: Sheet, file: BinaryIO) -> None:
@@ -51,11 +62,21 @@ def _page(one: CaseCuts) -> Figure:
         axes.set_axis_off()
     _write(head, 1.0, one.case.title or one.case.name, size=14.0)
     _write(head, 0.55, textwrap.fill(_set_up(one), 90))
-    _draw_table(table, [row[1:] for row in rows_of(one)], _HEADERS)
+    units = units_of(one.case)
+    _draw_table(table, [row[1:] for row in rows_of(one, units)], _headers(units))
     draw_limits(diagram, one.diagram)
+    if units is not METRIC:
+        _add_depths(diagram, units.length)
     diagram.set_xlabel("spindle speed [rpm]")
     _write(foot, 1.0, textwrap.fill(_remarks(one), 90))
     return figure
+
+
+def _add_depths(axes: Axes, unit: UsualUnit) -> None:
+    """Depths in another unit than mm, on the right."""
+    ratio = unit.factor / METRIC.length.factor
+    beside = axes.secondary_yaxis("right", functions=(lambda y: y * ratio, lambda y: y / ratio))
+    beside.set_ylabel(f"axial depth [{unit.name}]")
 
 
 def _table_of_all(cases: Sequence[CaseCuts]) -> Figure:
@@ -64,8 +85,9 @@ def _table_of_all(cases: Sequence[CaseCuts]) -> Figure:
     axes = figure.subplots()
     axes.set_axis_off()
     axes.set_title("Cuts worth making", loc="left", fontsize=14.0)
-    rows = [row for one in cases for row in rows_of(one)]
-    _draw_table(axes, [(_short(row[0]), *row[1:]) for row in rows], ("case", *_HEADERS))
+    units = units_of_all(cases)
+    rows = [row for one in cases for row in rows_of(one, units)]
+    _draw_table(axes, [(_short(row[0]), *row[1:]) for row in rows], ("case", *_headers(units)))
     return figure
 
 
@@ -84,7 +106,7 @@ def _draw_table(axes: Any, rows: Sequence[Sequence[Any]], headers: Sequence[str]
     for (row, column), cell in table.get_celld().items():
         cell.set_edgecolor("#BBBBBB")
         cell.set_height(0.17 if row == 0 else 0.09)
-        if len(headers) > len(_HEADERS):
+        if len(headers) > _COLUMNS:
             cell.set_height(0.05 if row == 0 else 0.03)
         if row == 0:
             cell.set_facecolor("#EEEEEE")
@@ -93,10 +115,11 @@ def _draw_table(axes: Any, rows: Sequence[Sequence[Any]], headers: Sequence[str]
 
 
 def _set_up(one: CaseCuts) -> str:
-    tool, cut = one.case.tool, one.case.cut
+    tool, cut, length = one.case.tool, one.case.cut, units_of(one.case).length
     stated = (
-        f"{tool.kind}, {1e3 * tool.diameter:.4g} mm, {tool.teeth} teeth; {cut.mode}, "
-        f"width of cut {1e3 * one.case.width_of_cut:.4g} mm; method {one.diagram.method}"
+        f"{tool.kind}, {tool.diameter * length.factor:.4g} {length.name}, {tool.teeth} teeth; "
+        f"{cut.mode}, width of cut {one.case.width_of_cut * length.factor:.4g} {length.name}; "
+        f"method {one.diagram.method}"
     )
     coefficients = coefficients_in_words(one.case)
     return stated if coefficients is None else f"{stated}; {coefficients}"
@@ -112,7 +135,9 @@ def _remarks(one: CaseCuts) -> str:
     lines = [f"An empty limit: none was found up to the depth that was searched. {kept}"]
     variation = one.variation
     if variation is not None:
-        limit = "no limit" if variation.limit is None else f"{1e3 * variation.limit:.3g} mm"
+        length = units_of(one.case).length
+        shown = "" if variation.limit is None else f"{variation.limit * length.factor:.3g}"
+        limit = f"{shown} {length.name}" if shown else "no limit"
         lines.append(
             f"Spindle-speed variation of {100.0 * variation.amplitude:.0f} % at "
             f"{variation.frequency:.2g} Hz raises the limit of the stated cut to {limit}, if the "

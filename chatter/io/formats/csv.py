@@ -5,15 +5,22 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
+from chatter.description.units import measured_unit
 from chatter.io.files import read_lines
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.node_table import read_nodes
+from chatter.io.formats.stated_rate import is_over_time_or_frequency, stated_step
 from chatter.io.table import Column, Table, is_number
 from chatter.io.time_stamps import is_time_stamp, seconds_of
 from dynamics.frf.container import MeasurementError
 
 _COMMENT = ("#", "%", "//", "!")
+_DATE = re.compile(r"[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}")
+#: a unit alone: in brackets of one kind, or none
+_UNIT = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|-")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
 #: a whole number with its thousands in groups, which may be one with a decimal comma
 _GROUPS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
@@ -55,27 +62,58 @@ def table_of_lines(path: Path, lines: Sequence[str]) -> Table:
         if len(row) != len(headings):
             if index < first:
                 continue
+            if _are_words(lines[index:]):
+                break
             raise MeasurementError(
                 f"{path}: line {index + 1} has {len(row)} columns where the heading has "
                 f"{len(headings)}: {lines[index].strip()[:60]!r}"
             )
         rows.append(row)
         numbers.append(index + 1)
-    return _table(path, headings, rows, numbers)
+    return _table(path, headings, rows, numbers, lines[:begin])
+
+
+def _are_words(lines: Sequence[str]) -> bool:
+    """Whether no line holds a number in a cell of its own, as below the last row of a record."""
+    words = (word for line in lines for word in re.split(r"[\s;,]+", line))
+    return not any(is_number(word) for word in words if word)
 
 
 def _table(
-    path: Path, headings: Sequence[str], rows: Sequence[Sequence[str]], lines: Sequence[int]
+    path: Path,
+    headings: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    lines: Sequence[int],
+    above: Sequence[str],
 ) -> Table:
-    """Table of rows, with decimal points and with times of day as seconds since the first."""
+    """Table of rows, with decimal points and with times of day as seconds since the first.
+
+    Where no column is a time, it is that of the sampling rate which the lines above state.
+    """
     columns = []
-    for heading, cells in zip(headings, zip(*_with_points(rows), strict=True), strict=True):
+    each = list(zip(*_with_points(rows), strict=True))
+    headings, each = _with_dates_in_times(list(headings), each)
+    for heading, cells in zip(headings, each, strict=True):
         if not heading and not any(cell.strip() for cell in cells):
             continue
         seconds = seconds_of(cells) if is_time_stamp(cells[0]) else None
         is_time = seconds is not None
         columns.append(Column("time [s]" if is_time else heading, seconds if is_time else cells))
+    step = stated_step(above)
+    if step is not None and not any(is_over_time_or_frequency(one.heading) for one in columns):
+        columns.insert(0, Column("time [s]", step * np.arange(len(rows))))
     return Table(path, tuple(columns), lines)
+
+
+def _with_dates_in_times(
+    headings: list[str], columns: list[Sequence[str]]
+) -> tuple[list[str], list[Sequence[str]]]:
+    """Columns of which one of dates, beside one of times of day, is joined to that."""
+    for k in range(len(columns) - 1):
+        if _DATE.fullmatch(columns[k][0].strip()) and is_time_stamp(columns[k + 1][0]):
+            joined = [" ".join(pair) for pair in zip(columns[k], columns[k + 1], strict=True)]
+            return headings[:k] + headings[k + 1 :], [*columns[:k], joined, *columns[k + 2 :]]
+    return headings, columns
 
 
 def _with_points(rows: Sequence[Sequence[str]]) -> Sequence[Sequence[str]]:
@@ -115,7 +153,7 @@ def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
             )
         rows.append(row)
         numbers.append(index + 1)
-    return _table(path, headings, rows, numbers)
+    return _table(path, headings, rows, numbers, lines[:first])
 
 
 def _is_comment(line: str) -> bool:
@@ -171,12 +209,21 @@ def _headings(
         if not found:
             continue
         headings, index = found[-1]
-        if len(found) > 1 and not any("[" in cell or "(" in cell for cell in headings):
+        if len(found) > 1 and _are_units(headings):
             # names on one line, units on the next
             pairs = zip(found[-2][0], headings, strict=True)
             headings = [_with_unit(name, unit) for name, unit in pairs]
         return _filled_from_above(headings, lines[:index], separator), index + 1
     return [], len(lines)
+
+
+def _are_units(cells: Sequence[str]) -> bool:
+    """Whether a line is the units of the names on the one before it: in brackets, or known."""
+    if any("[" in cell or "(" in cell for cell in cells):
+        return all(_UNIT.fullmatch(cell) for cell in cells if cell)
+    units = [cell for cell in cells if cell not in ("", "1", "-", "%")]
+    known = sum(measured_unit(cell) is not None for cell in units)
+    return 2 * known >= len(units) and not is_over_time_or_frequency(f"{cells[0]} [1]")
 
 
 def _filled_from_above(

@@ -18,6 +18,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
+from chatter.description.shop_units import with_decimals
 from chatter.description.stated_cut import share_in_length
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor, write
 from chatter.studies.counted_range import counted_range
@@ -218,7 +219,7 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
     where = f"--vary {path}"
     text, count = counted_range(where, text, DEFAULT_COUNT if count is None else count, MOST_VALUES)
-    low, _, high = (part.strip().strip('"') for part in text.partition(".."))
+    low, _, high = (part.strip().strip('"') for part in with_decimals(text).partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
     if re.fullmatch(NUMBER, low) and unit:

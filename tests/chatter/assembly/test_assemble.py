@@ -285,6 +285,16 @@ def test_catalogues_as_shops_have_them(tmp_path, text, encoding):
     assert tool.teeth == 4
 
 
+def test_fractions_of_an_inch_in_a_catalogue(tmp_path):
+    catalogue = tmp_path / "maker.csv"
+    heading = "name,diameter [in],shank diameter [in],flute length [in],length [in],teeth"
+    catalogue.write_text(f'{heading}\nA,1/2,1/2",1 1/4,2-1/2,4\n', encoding="utf-8")
+    tool = Library.from_text(library_of_catalogue(catalogue)[0], "library").tool["A"]
+    assert tool.diameter == tool.shank_diameter == pytest.approx(12.7e-3, rel=1e-9)
+    assert tool.flute_length == pytest.approx(31.75e-3, rel=1e-9)
+    assert tool.length == pytest.approx(63.5e-3, rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

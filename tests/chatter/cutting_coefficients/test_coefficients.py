@@ -254,3 +254,37 @@ def test_one_cut_is_written_as_one(tmp_path):
     shown = chatter_command("coefficients", folder, "--mean-forces", "--out", tmp_path / "out")
     assert "of 1 cut\n" in shown.stdout
     assert "of 1 cut\n" in (tmp_path / "out" / "material.toml").read_text(encoding="utf-8")
+
+
+#: SI of a pound (a force), an inch: NIST SP 811
+POUND, INCH = 4.4482216152605, 0.0254
+
+
+def in_inches(folder):
+    """The same records, their case in inches and forces in pounds."""
+    for file in folder.glob("feed_*.csv"):
+        table = np.loadtxt(file, delimiter=",", skiprows=1)
+        table[:, 1:] /= POUND
+        np.savetxt(
+            file, table, delimiter=",", comments="",
+            header="time [s],Fx [lbf],Fy [lbf],Fz [lbf]",
+        )  # fmt: skip
+    case = (folder / "case.toml").read_text(encoding="utf-8")
+    for metric, inches in {"12 mm": 12e-3, "0.05 mm": 5e-5, "2 mm": 2e-3, "3 mm": 3e-3}.items():
+        case = case.replace(f'"{metric}"', f'"{inches / INCH:.12g} in"')
+    (folder / "case.toml").write_text(case, encoding="utf-8")
+    return folder
+
+
+def test_a_case_in_inches_has_coefficients_in_pounds_and_inches(tmp_path):
+    found = chatter.coefficients(in_inches(records(tmp_path, **UP_CUT)))
+    factors = {"ksi": 1e3 * POUND / INCH**2, "lbf/in": POUND / INCH}
+    for one in found.summary()["coefficients"]:
+        share = 0.02 if one["name"][2] == "c" else 0.04
+        assert one["value"] * factors[one["unit"]] == pytest.approx(TRUE[one["name"]], rel=share)
+    text = (tmp_path / "case.toml").read_text() + found.material_toml()
+    (tmp_path / "whole.toml").write_text(text)
+    case = load(tmp_path / "whole.toml")
+    assert case.get("material.Ktc") == pytest.approx(TRUE["Ktc"], rel=0.02)
+    assert case.get("material.Kte") == pytest.approx(TRUE["Kte"], rel=0.04)
+    assert found.plot().axes[0].get_ylabel() == "mean force [lbf]"

@@ -37,6 +37,18 @@ def test_a_turn_a_second(unit):
         ("100 ipm", "velocity", 100 * 0.0254 / 60),
         ("400 sfm", "velocity", 400 * 0.3048 / 60),
         ("0.004 ipt", "length", 0.004 * 0.0254),
+        ("1/2 in", "length", 0.0127),
+        ("1 1/4 in", "length", 0.03175),
+        ("1-1/4 inch", "length", 0.03175),
+        ('3/8"', "length", 0.009525),
+        ('2 1/2"', "length", 0.0635),
+        ('0.5"', "length", 0.0127),
+        ("½ in", "length", 0.0127),
+        ("1½ in", "length", 0.0381),
+        ("-1/8 in", "length", -0.003175),
+        ("1/64 in", "length", 0.000396875),
+        ("50 1/s", "rate", 50.0),
+        ("10 1/4 hp", "power", 10.25 * 745.6998715822702),
     ],
 )
 def test_spellings_of_the_shop(text, dimension, value):
@@ -54,8 +66,10 @@ def test_spellings_of_the_shop(text, dimension, value):
         ("1 650 MPa", "pressure", 'write "1650 MPa"'),
         ("12'000 rpm", "angular_speed", 'write "12000 rpm"'),
         ("12,000 rpm", "angular_speed", 'write "12000 rpm", or "12.000 rpm"'),
-        ("1/2 in", "length", 'write "0.5 inch"'),
-        ('0.5"', "length", 'write "0.5 inch"'),
+        ("1/2", "length", "has no unit"),
+        ("1/0 in", "length", "is required"),
+        ("1//2 in", "length", "is required"),
+        ('1/2"', "angle", "is a length"),
     ],
 )
 def test_what_is_not_taken_says_what_to_write(text, dimension, advice):

@@ -8,7 +8,9 @@ import pytest
 
 import chatter
 from chatter.description.errors import InputError
+from chatter.description.unit_system import INCH, METRIC
 from chatter.operator_sheet.variation import variation_that_helps
+from chatter.operator_sheet.workbook import units_of_all
 from chatter.plots.sheet import pages
 from tests.command_line import chatter_command
 from tests.places import EXAMPLES
@@ -139,3 +141,37 @@ def test_the_page_says_how_much_its_depths_keep_in_hand(found):
         text = " ".join(part.get_text() for axes in figure.axes for part in axes.texts)
         kept = 1.0 - one.cuts[-1].axial_depth / one.cuts[-1].limit
         assert f"keep {round(100.0 * kept)}% of the lowest limit" in " ".join(text.split())
+
+
+IN_INCHES = {
+    "tool.diameter": "1/2 in",
+    "cut.axial_depth": "1/64 in",
+    "cut.radial_depth": "1/4 in",
+    "cut.feed_per_tooth": "0.002 in",
+    "lobes.speeds": {"from": "4000 rpm", "to": "5000 rpm", "count": 5},
+}
+
+
+def test_a_case_in_inches_has_a_sheet_in_inches(tmp_path):
+    """4500 rpm, half an inch, four teeth of 0.002 in, 1/64 in by 1/4 in."""
+    found = chatter.sheet(chatter.load(STEEL).patch(IN_INCHES))
+    found.save(tmp_path)
+    table = openpyxl.load_workbook(tmp_path / "sheet.xlsx")["cuts"]
+    heading, row = [[cell.value for cell in table[line]] for line in (1, 2)]
+    shown = dict(zip(heading, row, strict=True))
+    assert shown["cutting speed [sfm]"] == round(math.pi * 0.5 / 12.0 * 4500.0)
+    assert shown["feed rate [ipm]"] == pytest.approx(4500.0 * 4 * 0.002)
+    assert shown["feed per tooth [ipt]"] == pytest.approx(0.002)
+    assert shown["axial depth [in]"] == pytest.approx(1.0 / 64.0, abs=5e-5)
+    assert shown["width of cut [in]"] == pytest.approx(0.25)
+    removed = 4500.0 * 4 * 0.002 / 64.0 / 4.0
+    assert shown["removal rate [in^3/min]"] == pytest.approx(removed, abs=5e-4)
+    in_mm = found.summary()["cases"][0]["cuts"][0]
+    assert shown["limit [in]"] == pytest.approx(in_mm["critical_depth_mm"] / 25.4, abs=5e-5)
+
+
+def test_cases_in_both_units_share_a_metric_table(found):
+    inches = chatter.load(STEEL).patch(IN_INCHES)
+    both = [found.cases[0], found.cases[0]._replace(case=inches)]
+    assert units_of_all(both) is METRIC
+    assert units_of_all(both[1:]) is INCH
