@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import tomlkit
 
-from chatter.description.units import unit_factor
 from chatter.description.usual_units import UsualUnit
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
 
-_INCH, _POUND = unit_factor("in", "length"), unit_factor("lbf", "force")
+#: m and N by definition (NIST SP 811): the units library, slow to load, need not be asked
+_INCH, _POUND = 0.0254, 4.4482216152605
 _OF_INCHES = re.compile(r"(?:in|inch|inches|mil|thou|ft|ipt|ipm|sfm|sfpm)\b|\"|″", re.IGNORECASE)
 _OF_METRES = re.compile(r"(?:mm|um|µm|μm|cm|m)\b")
 _UNIT = re.compile(r"[^0-9]*$")
