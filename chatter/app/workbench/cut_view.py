@@ -38,6 +38,7 @@ _COLOURS = ("#0072B2", "#E69F00", "#009E73")
 _MOST_POINTS = 6000
 _FRAMES = 100
 _SOUND_RATE, _SHORTEST_SOUND, _LONGEST_SOUND = 44_100, 2.0, 20.0  # Hz, s, s
+_CHANGED = "the case was changed after this cut was simulated"
 _CARVE = {"simulation.chip": "dexel"}
 
 
@@ -56,6 +57,8 @@ class CutView:
         self.result: SimulationResult | None = None
         self._removed: Any = None
         self._shown: tuple[str, str] | None = None
+        #: name and text of the case that the cut on the page is of
+        self._simulated = ("", "")
         self.start_button = pn.widgets.Button(label="Simulate", color="primary")
         self.carve = pn.widgets.Checkbox(label="carve the workpiece (dexels)", value=False)
         self.cancel_button = pn.widgets.Button(label="Cancel")
@@ -119,8 +122,17 @@ class CutView:
             return
         self._shown = stands
         self._show_call()
+        if self.result is not None and session.name != self._simulated[0]:
+            self._clear()
         if self.result is None:
             self._before.objects = result_panel(session.results("simulate"))
+        elif session.text != self._simulated[1]:
+            self.message.object = _CHANGED
+
+    def _clear(self) -> None:
+        """Show no cut: what is shown is of another case."""
+        self.result, self._pictures.visible, self.message.object = None, False, ""
+        self._files.objects, self.sound_file.disabled = [], True
 
     def start(self) -> None:
         """Simulate the cut."""
@@ -132,6 +144,7 @@ class CutView:
             return
         changes = self._changes(case)
         call, folder = self._call(changes), self._session.results("simulate")
+        of_what = self._session.name, self._session.text
         self.call.objects = [same_call(call)]
 
         def compute(go_on: Progress) -> None:
@@ -144,7 +157,7 @@ class CutView:
                 go_on(0, 0)
                 removed = _removal(result)
                 save_result(result, folder, {"title": "Cut", **call})
-                self._show(lambda: self._draw(result, removed, folder))
+                self._show(lambda: self._draw(result, removed, folder, of_what))
             finally:
                 self._show(lambda: self.progress.param.update(value=0, active=False))
 
@@ -198,7 +211,12 @@ class CutView:
             "python": f"chatter.simulate(chatter.load({file!r}){given})",
         }
 
-    def _draw(self, result: SimulationResult, removed: Any, folder: Any) -> None:
+    def _draw(
+        self, result: SimulationResult, removed: Any, folder: Any, of_what: tuple[str, str]
+    ) -> None:
+        if of_what[0] != self._session.name:
+            return  # another case was opened meanwhile; its files are kept
+        self._simulated = of_what
         self.result, self._removed = result, removed
         self._pictures.visible, self._carved.visible = True, removed is not None
         self._before.objects = []

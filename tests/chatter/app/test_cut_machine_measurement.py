@@ -62,6 +62,27 @@ def test_a_cut_is_simulated_and_heard(workbench):
     assert view._figures["force"].x_range.end == pytest.approx(0.5 * view.result.time[-1])
 
 
+def test_the_cut_on_the_page_is_that_of_the_open_case(workbench, tmp_path):
+    """Another case was opened, and the cut of the one before stood under its name."""
+    (tmp_path / "other.toml").write_text((tmp_path / "case.toml").read_text())
+    view = workbench.cut
+    view.start()
+    assert view.computations.wait(PATIENCE)
+    view.refresh()
+    workbench.session.set_values([("cut.axial_depth", "0.4 mm")])
+    view.refresh()
+    assert "was changed after" in view.message.object
+    assert view._pictures.visible
+    workbench.open("other.toml")
+    view.refresh()
+    assert view.result is None
+    assert not view._pictures.visible
+    assert view._before.objects == []
+    workbench.session.open("case.toml")
+    view.refresh()
+    assert view._before.objects  # as it was saved
+
+
 def test_the_sound_has_the_frequency_of_the_tool():
     time = np.arange(0.0, 0.5, 2e-5)
     moved = np.zeros((len(time), 3))
