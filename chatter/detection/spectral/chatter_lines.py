@@ -96,21 +96,40 @@ def _family(line: float, comb: Comb) -> Array:
 
 def _sidebands(above: Array, frequency: Array, line: float, comb: Comb) -> float:
     """Significance of the sidebands of a line, one revolution or one tooth apart."""
-    near = _Near(above, frequency, comb)
-    orders = np.concatenate([np.arange(-_SIDEBANDS, 0), np.arange(1, _SIDEBANDS + 1)])
-    offsets = comb.revolution * (np.arange(_OFFSETS) + 0.5) / _OFFSETS
-    offsets = offsets[comb.off(line + offsets) & _between(offsets, comb)]
+    near, orders, offsets = _sideband_positions(above, frequency, line, comb)
 
     def of(*spacings: float) -> float:
-        at = np.abs(np.concatenate([line + spacing * orders for spacing in spacings]))
-        at = at[(at > comb.half_width) & (at < frequency[-1] - 2.0 * comb.revolution)]
-        return _significance(near, at[comb.off(at)], offsets)
+        at = np.concatenate([line + spacing * orders for spacing in spacings])
+        return _significance(near, _on_spectrum(at, frequency, comb), offsets)
 
     if comb.tooth > comb.revolution:
         both = max(of(comb.tooth), of(comb.revolution), of(comb.tooth, comb.revolution))
         return both - _BEST_OF_THREE
     # the teeth are not known: those that fit best, less what the best of so many has by chance
     return max(of(n * comb.revolution) for n in range(1, MOST_TEETH + 1)) - _BEST_OF_SO_MANY
+
+
+def sidebands_at_teeth(above: Array, frequency: Array, line: float, comb: Comb) -> float:
+    """Standard deviations by which sidebands one tooth apart stand above chance ones."""
+    near, orders, offsets = _sideband_positions(above, frequency, line, comb)
+    return _significance(near, _on_spectrum(line + comb.tooth * orders, frequency, comb), offsets)
+
+
+def _sideband_positions(
+    above: Array, frequency: Array, line: float, comb: Comb
+) -> tuple[_Near, Array, Array]:
+    """Levels near a frequency, orders of the sidebands, and offsets of what is by chance."""
+    orders = np.concatenate([np.arange(-_SIDEBANDS, 0), np.arange(1, _SIDEBANDS + 1)])
+    offsets = comb.revolution * (np.arange(_OFFSETS) + 0.5) / _OFFSETS
+    offsets = offsets[comb.off(line + offsets) & _between(offsets, comb)]
+    return _Near(above, frequency, comb), orders, offsets
+
+
+def _on_spectrum(at: Array, frequency: Array, comb: Comb) -> Array:
+    """Those frequencies that the spectrum has, and that are on no harmonic."""
+    at = np.abs(at)
+    at = at[(at > comb.half_width) & (at < frequency[-1] - 2.0 * comb.revolution)]
+    return at[comb.off(at)]
 
 
 def _between(offsets: Array, comb: Comb) -> NDArray[np.bool_]:

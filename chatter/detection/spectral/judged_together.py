@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 from chatter.detection.spectral.frame_evidence import evidence_of
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.segments import CHATTER, segments_of
+from chatter.detection.spectral.segments import CHATTER
 from chatter.detection.spectral.stated_speed import REFUTED
+from chatter.detection.spectral.two_speeds import judged
 
 
 class JudgedTogether(NamedTuple):
@@ -31,9 +32,8 @@ def judged_together(recording: Recording, given: float, teeth: int | None) -> Ju
     other = evidence.other_speed
     is_refuted = other is not None and other.relation == REFUTED
     frequency, share = math.nan, math.nan
-    if not is_refuted:
-        last = segments_of(evidence)[-1]
-        if last.verdict == CHATTER:
-            frequency, share = last.chatter_frequency, last.share
+    last = judged(evidence)[-1]
+    if last.verdict == CHATTER:
+        frequency, share = last.chatter_frequency, last.share
     speed = given if is_refuted else evidence.revolution.mean
     return JudgedTogether(speed, is_refuted, frequency, share, evidence.rest is not None)

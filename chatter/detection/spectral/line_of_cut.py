@@ -31,6 +31,11 @@ CUTS, _CUTS_FOR_SURE, CUTS_CLEARLY = 4.0, 8.0, 6.0
 _STEADY, _STEADY_FREQUENCY = 0.03, 1e-4
 #: kurtosis of the envelope half way between those of a limit cycle and of a mode shaken by noise
 _LIMIT_CYCLE = 1.5
+#: the same up to which a line is steady, where frames without entry and exit show it, and the
+#: independent readings that it takes
+STEADY, READINGS = 1.35, 8.0
+#: share of the power that a line has in some frames down to which it is there in others
+_IS_THERE = 0.1
 #: frequencies of the mains, Hz, how far off they are, and highest harmonic that is heard
 _MAINS, _MAINS_TOLERANCE, _MAINS_ORDERS = (50.0, 60.0), 2e-3, 12
 #: quantities of the motor, whose lines are of its supply too
@@ -57,6 +62,8 @@ def is_line_of_cut(evidence: Evidence, rows: slice) -> bool:
     """
     line = line_of(evidence, rows)
     if may_be_harmonic(evidence, rows, line.frequency):
+        return False
+    if is_shaken_by_noise(evidence, rows, line.frequency):
         return False
     sidebands = _median_sidebands(evidence, rows)
     count = rows.stop - rows.start
@@ -141,6 +148,51 @@ def is_limit_cycle(
     end = float(frames.time[rows.stop - 1]) + 0.5 * frames.length
     kurtosis = envelope_kurtosis(evidence.recording, begin, end, line, comb.revolution)
     return kurtosis < most
+
+
+def is_shaken_by_noise(evidence: Evidence, rows: slice, line: float) -> bool:
+    """Whether a line that is not most of the power is a mode that the noise of the cut shakes.
+
+    The teeth modulate that noise, which gives the mode sidebands as chatter has them. It exceeds
+    any share of the power for a while: all frames around show it that have the line.
+    """
+    share = float(np.median([one.share for one in evidence.lines[rows]]))
+    return share < _WITHOUT_SIDEBANDS and kurtosis_around(evidence, rows, line) > STEADY
+
+
+def _with_the_line(evidence: Evidence, rows: slice, line: float) -> slice:
+    """Frames of the cut around some, without a gap, that have a line as they have."""
+    frames = evidence.frames
+    near = np.abs(frames.frequency - line) < frames.half_width
+    power = frames.power[:, near].sum(axis=1)
+    there = (power > _IS_THERE * np.median(power[rows])) & ~evidence.silent
+    if evidence.idle is not None:
+        there &= ~evidence.idle
+    first, last = rows.start, rows.stop
+    while first > 0 and there[first - 1]:
+        first -= 1
+    while last < there.size and there[last]:
+        last += 1
+    return slice(first, last)
+
+
+def kurtosis_around(evidence: Evidence, rows: slice, line: float) -> float:
+    """Kurtosis of the envelope of a line over some frames and those around that have it.
+
+    From the middle of the first frame to that of the last, which may hold the entry and the exit;
+    the ends of the recording are none. It is nan where too few independent readings show it.
+    """
+    frames, rows = evidence.frames, _with_the_line(evidence, rows, line)
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    begin, end = float(frames.time[rows.start]), float(frames.time[rows.stop - 1])
+    if rows.start == 0:
+        begin -= 0.5 * frames.length
+    if rows.stop == frames.time.size:
+        end += 0.5 * frames.length
+    order = line / comb.revolution
+    if (end - begin) * abs(order - round(order)) * comb.revolution < READINGS:
+        return math.nan
+    return envelope_kurtosis(evidence.recording, begin, end, line, comb.revolution)
 
 
 def may_be_harmonic(evidence: Evidence, rows: slice, line: float) -> bool:

@@ -18,11 +18,13 @@ from chatter.detection.spectral.line_of_cut import (
     SIDEBANDS,
     cut_significance,
     is_line_of_cut,
+    is_shaken_by_noise,
     line_of,
     sidebands_of,
 )
 from chatter.detection.spectral.several_lines import LinesOfCut, all_lines_of_cut
 from chatter.detection.spectral.spectra import RATIO_AT_REST
+from chatter.detection.spectral.steady_family import steady_families
 
 CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
 
@@ -90,6 +92,9 @@ def _with_speed(evidence: Evidence) -> list[Segment]:
     verdicts = _verdicts(evidence)
     judged = np.array([one in (STABLE, NOT_JUDGED) for one in verdicts])
     several = all_lines_of_cut(evidence, judged) if _is_long_enough(evidence) else []
+    for one in several:
+        judged[one.rows] = False
+    several += steady_families(evidence, judged) if _is_long_enough(evidence) else []
     for one in several:
         verdicts[one.rows] = [CHATTER] * (one.rows.stop - one.rows.start)
     return [
@@ -219,9 +224,13 @@ def _of_several_lines(
 ) -> Segment:
     longest = max(found, key=lambda one: one.rows.stop - one.rows.start)
     names = ", ".join(f"{one:.1f}" for one in longest.frequencies)
+    lines, keeps = (
+        ("lines", "keep their") if len(longest.frequencies) > 1 else ("a line", "keeps its")
+    )
+    beside = ", and has sidebands at the teeth" if longest.has_sidebands else ""
     reason = (
-        f"{longest.share:.0%} of the power is lines at {names} Hz, off the harmonics of the "
-        "spindle, which keep their amplitude as chatter does"
+        f"{longest.share:.0%} of the power is {lines} at {names} Hz, off the harmonics of the "
+        f"spindle, which {keeps} amplitude as chatter does{beside}"
     )
     strength = float(np.clip((longest.share - BEGINS) / 0.4, 0.0, 1.0))
     return Segment(
@@ -309,6 +318,11 @@ def _of_not_judged(evidence: Evidence, rows: slice) -> tuple[float, str]:
     line = line_of(evidence, rows)
     if rows.stop - rows.start < _LASTS:
         return 0.0, f"a line at {line.frequency:.1f} Hz comes and goes"
+    if is_shaken_by_noise(evidence, rows, line.frequency):
+        return 0.0, (
+            f"a line at {line.frequency:.1f} Hz has {line.share:.0%} of the power for a while, and "
+            "swings as a mode that the noise of the cut shakes: the cut may be near its limit"
+        )
     return 0.0, (
         f"a line at {line.frequency:.1f} Hz has {line.share:.0%} of the power, without the "
         "sidebands that a cut gives to chatter: it may be of the machine"

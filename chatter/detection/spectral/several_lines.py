@@ -22,7 +22,7 @@ from chatter.detection.spectral.spectra import RATIO_AT_REST, mean_of
 Array = NDArray[np.float64]
 
 #: sources of a speed that is stated, or measured, and which the lines do not contradict
-_CONFIRMED = ("tacho", "given, refined by the spectrum")
+CONFIRMED = ("tacho", "given, refined by the spectrum")
 #: lines that are looked at, share of the power of the least of them
 _MOST, _LEAST = 6, 0.05
 #: logarithm of the power of a line above what is beside it
@@ -47,6 +47,7 @@ class LinesOfCut(NamedTuple):
     rows: slice
     frequencies: tuple[float, ...]  # Hz, the strongest first
     share: float  # of the power, of all lines together, median over the frames
+    has_sidebands: bool = False  # at the teeth
 
 
 def all_lines_of_cut(evidence: Evidence, judged: NDArray[np.bool_]) -> list[LinesOfCut]:
@@ -56,7 +57,7 @@ def all_lines_of_cut(evidence: Evidence, judged: NDArray[np.bool_]) -> list[Line
     off those harmonics may be on the true ones.
     """
     revolution = evidence.revolution
-    if revolution.source not in _CONFIRMED:
+    if revolution.source not in CONFIRMED:
         return []
     large = judged & (_shares_off_harmonics(evidence) > _GOES_ON)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], large.astype(int), [0]])))
