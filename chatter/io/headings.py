@@ -41,6 +41,7 @@ DIMENSIONS = {
 #: spellings, in lower case and without spaces and strokes -> name
 _SPELLINGS = {name.lower().replace("_", ""): name for name in DIMENSIONS} | {
     "t": "time",
+    "zeit": "time",
     "angle": "spindle_angle",
     "speed": "spindle_speed",
     "depth": "axial_depth",

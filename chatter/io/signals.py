@@ -51,6 +51,8 @@ def read_signals(
 def _in_si(table: Table, kind: str) -> Signals:
     signals: Signals = {}
     for column in table.columns:
+        if not column.heading.strip() and column.content is None:
+            continue  # the numbers of rows, as tables of pandas have them: nothing asks for them
         name, factor = _name_and_factor(table.path, column, kind)
         if name in signals:
             raise InputError(f'{table.path}: there are two columns "{name}"')

@@ -5,6 +5,7 @@ import pytest
 
 from chatter.io.formats.csv import read_table, read_with_headings
 from chatter.io.formats.stated_rate import stated_step
+from chatter.io.signals import read_signals
 from chatter.monitoring.recording_file import read_recording
 from dynamics.frf.container import MeasurementError
 
@@ -128,3 +129,17 @@ def test_channels_of_one_name_are_not_one_channel(tmp_path):
 def test_the_time_of_catman_is_one(tmp_path):
     path = written(tmp_path, f"Time  1 - default sample rate\tFx\ns\tN\n{rows(chr(9), TIME, FX)}")
     assert read_recording(path).time_step == pytest.approx(STEP)
+
+
+@pytest.mark.parametrize("heading", ["Zeit [s],Fx [N],Fy [N]", "Zeit / s,Fx / N,Fy / N"])
+def test_the_time_of_a_measurement_in_german(tmp_path, heading):
+    found = read_signals(written(tmp_path, f"{heading}\n{rows()}"), "milling")
+    assert list(found) == ["time", "Fx", "Fy"]
+    assert found["time"] == pytest.approx(TIME, abs=1e-8)
+
+
+def test_numbers_of_rows_without_a_name_are_passed_over(tmp_path):
+    path = written(tmp_path, f",time [s],Fx [N]\n{rows(',', np.arange(COUNT), TIME, FX)}")
+    found = read_signals(path, "milling")
+    assert list(found) == ["time", "Fx"]
+    assert found["Fx"] == pytest.approx(FX, abs=1e-8)
