@@ -4,6 +4,8 @@ import math
 from typing import Any
 
 _LONGEST = 60
+#: significant digits that a double has for certain
+_MOST_DIGITS = 15
 
 
 def formatted(value: Any) -> str:
@@ -39,6 +41,14 @@ def to_digits(value: float, digits: int = 2) -> str:
     """Number to so many significant digits, without an exponent where people write none: 140."""
     short = f"{value:.{digits}g}"
     return f"{float(short):.6g}" if 1.0 <= abs(float(short)) < 1e6 else short
+
+
+def told_apart(value: float, beside: float, digits: int = 4) -> str:
+    """Number to so many significant digits, to more where it would read as the one beside it."""
+    for more in range(digits, _MOST_DIGITS):
+        if f"{value:.{more}g}" != f"{beside:.{more}g}":
+            return f"{value:.{more}g}"
+    return f"{value:.{digits}g}"
 
 
 def signed(value: float, digits: int = 2) -> str:
