@@ -28,8 +28,10 @@ _SEPARATION_ANGLE = math.radians(37.6)
 #: nodes of the flank along the contact at rest, and behind it
 _NODES_OF_CONTACT = 40
 _NODES_BEHIND = 20
-#: samples of the wave, at the most
-_MOST_SAMPLES = 96
+#: samples of the wave over the contact at rest, at the least, where the steps are as short; and over
+#: the wave that is followed, at the most
+_SAMPLES_OF_CONTACT = 8
+_MOST_SAMPLES = 4096
 #: the wave is followed until the clearance is this high, m
 _HIGHEST_WAVE = 2e-4
 
@@ -130,8 +132,10 @@ class Ploughing:
             ]
         )
         arc = np.maximum(radius, LEAST_RADIUS * radius.max()) * step_angle
-        stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
-        samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
+        longest = arc.max()
+        fine = math.floor(contact / _SAMPLES_OF_CONTACT / longest)
+        stride = max(1, fine, math.ceil(length / (_MOST_SAMPLES - 2) / longest))
+        samples = math.ceil(length / (stride * longest)) + 2
         shape = (teeth, radius.size)
         return PloughingFlank(
             indentation_force=self.indentation_force,
@@ -189,25 +193,30 @@ def ploughing_force(flank, tooth, segment, position, turning, rate, speed):  # n
     samples = flank.surface.shape[2]
     spacing = flank.spacing[segment]
     # the newest sample was taken `age` steps before the last one, the others a stride earlier each
-    further = spacing * (flank.age[tooth, segment] + 1) / flank.stride
-    nearer, near_wave = 0.0, position
+    first = spacing * (flank.age[tooth, segment] + 1) / flank.stride
+    newest = flank.newest[tooth, segment]
     drift = turning * flank.inverse_radius[segment]
-    column, seen = flank.newest[tooth, segment], 1
     area = 0.0
     if count == 0:
         return 0.0, 0.0
-    far_wave = flank.surface[tooth, segment, column]
     left = at_rest = flank.depth[0]
     for node in range(1, flank.distance.shape[0]):
         distance = flank.distance[node]
-        while distance > further and seen < count:
+        if distance <= first:
+            near_wave, far_wave = position, flank.surface[tooth, segment, newest]
+            share = distance / first
+        else:
+            behind = (distance - first) / spacing
+            nearer = int(behind)
+            if nearer + 1 >= count:
+                break
+            column = newest - nearer
+            if column < 0:
+                column += samples
+            near_wave = flank.surface[tooth, segment, column]
             column = column - 1 if column > 0 else samples - 1
-            nearer, near_wave = further, far_wave
-            further, far_wave = further + spacing, flank.surface[tooth, segment, column]
-            seen += 1
-        if distance > further:
-            break
-        share = (distance - nearer) / (further - nearer)
+            far_wave = flank.surface[tooth, segment, column]
+            share = behind - nearer
         depth = flank.depth[node]
         right = position - drift * distance - (near_wave + share * (far_wave - near_wave)) + depth
         width = distance - flank.distance[node - 1]

@@ -180,6 +180,21 @@ def test_samples_of_the_wave_do_not_shape_the_force():
     assert coarse == pytest.approx(fine, rel=0.03)
 
 
+def test_a_wave_is_seen_within_the_shortest_contact():
+    """Beside the integral over all of the wave that the edge has left."""
+    law, step = worn(10e-6), 0.25e-6
+    place = wave(0.05e-6, 0.3e-3, step, waves=2)[1]
+    behind = step * np.arange(len(place))
+    profile = law.profile(behind)
+    wanted = [
+        FORCE * np.trapezoid(np.maximum(here - place[at::-1] + profile[: at + 1], 0.0), dx=step)
+        for at, here in enumerate(place)
+    ]
+    radial = Edge(law, step).run(place)[:, 0]
+    settled = len(place) // 2
+    assert np.allclose(radial[settled:], wanted[settled:], atol=0.04 * max(wanted[settled:]))
+
+
 def test_an_edge_that_left_the_cut_starts_anew():
     edge = Edge(worn())
     edge.run(wave(2e-6, 1e-3)[1][:200])
