@@ -40,6 +40,8 @@ _NEWS = 0.5
 #: s of work from which its pace is known, and that it is taken over
 _PACE = 1.0
 _OF_LATE = 20.0
+#: parts that it is taken over at the least: a single one may take a hundred times another
+_PARTS = 10
 
 
 class RunningWork:
@@ -90,11 +92,16 @@ class RunningWork:
         elif now - self._reports[-1][0] >= _PACE:
             self._reports.append((now, done))
         # the pace is that of late: parts of a search differ
-        while len(self._reports) > 1 and now - self._reports[1][0] > _OF_LATE:
+        while len(self._reports) > 1 and self._is_enough(now, done, *self._reports[1]):
             self._reports.popleft()
         if self._began_slowly():
             self._reports.popleft()
         self._newest = (now, done, total)
+
+    @staticmethod
+    def _is_enough(now: float, done: int, since: float, before: int) -> bool:
+        """Whether the pace can be taken from a report on."""
+        return now - since > _OF_LATE and done - before >= _PARTS
 
     def _began_slowly(self) -> bool:
         """Whether the first parts took what later ones do not: compiled code is read, say."""

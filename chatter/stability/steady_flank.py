@@ -32,6 +32,8 @@ _SWING = 0.1
 #: a limit is that of its own steady motion where the depths differ by less, relative; and how often
 #: it is moved at the most
 _SAME_DEPTH, _MOST_MOVES = 3e-3, 6
+#: searches over all depths at a speed, each from the first limit of the one before
+_MOST_SEARCHES = 2
 #: depths around the last limit on which the next one is searched first
 _AROUND, _DEPTHS_AROUND = (0.6, 1.6), 6
 #: rise of the depth over which the slope of the growth rate is taken; the largest step, as a
@@ -143,7 +145,7 @@ def limits_about_steady_motion(
                 found = _moved_limit(own, speed, start, depths, limits, radius)
                 if found is not None:
                     return found
-            return _limit_at(own, speed, start, depths, limits)
+            return _limit_at(own, speed, start, depths, limits, radius)
 
     curves = each(at, len(speeds), progress)
     return joined_limits(speeds, [(np.array([i]), curve) for i, curve in enumerate(curves)])
@@ -157,7 +159,24 @@ def _moved_limit(
     limits: LimitsAt,
     radius: RadiusAt,
 ) -> LimitCurve | None:
-    """Limit at a speed by Newton steps from another, m, and its frequency, Hz; None without end.
+    """Limit at a speed by Newton steps from another, m, and its frequency, Hz; None without end."""
+    depth = _moved_depth(model, speed, start, radius)
+    if depth is None or depth >= depths[-1]:
+        return None
+    near = depth * np.linspace(*_AROUND, _DEPTHS_AROUND)
+    near = near[near < depths[-1]]
+    if not near.size:
+        return None
+    beside = about_steady_motion(model, speed, depth, start[1])
+    found = limits(beside, speed, np.append(near, depths[-1]))
+    moved = float(found.critical_depth[0])
+    return found if abs(moved - depth) < 3.0 * _LOOSE * depth else None
+
+
+def _moved_depth(
+    model: MillingModel, speed: float, start: tuple[float, float], radius: RadiusAt
+) -> float | None:
+    """Depth, m, of the limit at a speed by Newton steps from another; None where they do not end.
 
     Every step moves along the growth rate at the flank of the last depth.
     """
@@ -171,17 +190,8 @@ def _moved_limit(
             return None
         depth *= float(np.exp(-rate / slope))
         if abs(rate) < _SAME_DEPTH * slope:
-            break
-    else:
-        return None
-    near = depth * np.linspace(*_AROUND, _DEPTHS_AROUND)
-    near = near[near < depths[-1]]
-    if depth >= depths[-1] or not near.size:
-        return None
-    beside = about_steady_motion(model, speed, depth, frequency)
-    found = limits(beside, speed, np.append(near, depths[-1]))
-    moved = float(found.critical_depth[0])
-    return found if abs(moved - depth) < 3.0 * _LOOSE * depth else None
+            return depth
+    return None
 
 
 def _is_stable(model: MillingModel, speed: float, depths: Array, radius: RadiusAt) -> bool:
@@ -194,10 +204,33 @@ def _is_stable(model: MillingModel, speed: float, depths: Array, radius: RadiusA
 
 
 def _limit_at(
-    model: MillingModel, speed: float, start: tuple[float, float], depths: Array, limits: LimitsAt
+    model: MillingModel,
+    speed: float,
+    start: tuple[float, float],
+    depths: Array,
+    limits: LimitsAt,
+    radius: RadiusAt | None,
 ) -> LimitCurve:
     """Limits at a speed, from the first limit, m, and its frequency, Hz, with another flank."""
     depth, frequency = min(start[0], float(depths[-1])), start[1]
+    for _ in range(_MOST_SEARCHES):
+        begin = depth, frequency
+        moved = None if radius is None else _moved_depth(model, speed, begin, radius)
+        if moved is None or moved >= depths[-1]:
+            moved, frequency = _followed_depth(model, speed, begin, depths, limits)
+        found = limits(about_steady_motion(model, speed, moved, frequency), speed, depths)
+        depth, frequency = float(found.critical_depth[0]), float(found.chatter_frequency[0])
+        if not np.isfinite(depth) or abs(depth - moved) < _SAME_DEPTH * moved:
+            return found
+    # which limit is the first has changed with the motion: that of the last one
+    return limits(about_steady_motion(model, speed, depth, frequency), speed, depths)
+
+
+def _followed_depth(
+    model: MillingModel, speed: float, start: tuple[float, float], depths: Array, limits: LimitsAt
+) -> tuple[float, float]:
+    """Depth, m, and frequency, Hz, of a limit with the motion of the last, until they agree."""
+    depth, frequency = start
     for _ in range(_MOST_MOVES):
         near = depth * np.linspace(*_AROUND, _DEPTHS_AROUND)
         beside = about_steady_motion(model, speed, depth, frequency)
@@ -208,12 +241,7 @@ def _limit_at(
         last, depth, frequency = depth, moved, float(found.chatter_frequency[0])
         if abs(depth - last) < _SAME_DEPTH * depth:
             break
-    found = limits(about_steady_motion(model, speed, depth, frequency), speed, depths)
-    moved = float(found.critical_depth[0])
-    if np.isfinite(moved) and abs(moved - depth) > _SAME_DEPTH * depth:
-        # what the first limit is has changed: once more with the motion there
-        found = limits(about_steady_motion(model, speed, moved, frequency), speed, depths)
-    return found
+    return depth, frequency
 
 
 def radius_about_steady_motion(

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from chatter.description.arrays import Array, ComplexArray
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.engine.presets import DRIVER
 from chatter.stability.model import MillingModel
 from cutting.edge_segments.coupling import arc_at, delay_at, part_below, share_of_height
@@ -250,20 +250,40 @@ def _convolved(receptance: ComplexArray, coupling: Array, factor: ComplexArray) 
 
     The coupling is a force by the motion at the samples of a period, (N, r, r).
     """
-    count, rank = receptance.shape[0], receptance.shape[1]
     samples = coupling.shape[0]
     spectrum = np.fft.fft(coupling, axis=0) / samples
-    difference = np.subtract.outer(np.arange(count), np.arange(count))
-    # samples lie in the middle of their parts of the period
-    factors = np.exp(-1j * np.pi / samples * difference) * factor
-    blocks = spectrum[difference % samples] * factors[:, :, None, None]
-    return np.einsum("kij,kmjl->kiml", receptance, blocks).reshape(count * rank, count * rank)
+    blocks = spectrum[_differences(factor.size) % samples] * factor[:, None, None]
+    return _motion_by_motion(receptance, blocks, samples)
 
 
 def _regeneration(receptance: ComplexArray, rigid: RigidCut, order: Array) -> ComplexArray:
     """Loop of the regenerated force -K (u - u delayed)."""
-    parts = zip(rigid.coupling, rigid.delay, strict=True)
-    return sum(_convolved(receptance, part, 1.0 - np.exp(-1j * order * d)) for part, d in parts)
+    samples, count = rigid.coupling.shape[1], order.size
+    spectra = np.fft.fft(rigid.coupling, axis=1) / samples
+    factors = 1.0 - np.exp(-1j * np.outer(order, rigid.delay))
+    reached = spectra[:, np.arange(1 - count, count) % samples]
+    by_motion = np.tensordot(factors, reached, axes=1)
+    blocks = by_motion[np.arange(count)[None, :], _differences(count) + count - 1]
+    return _motion_by_motion(receptance, blocks, samples)
+
+
+def _differences(count: int) -> IntegerArray:
+    """Harmonic of the force less that of the motion, (k, m)."""
+    return np.subtract.outer(np.arange(count), np.arange(count))
+
+
+def _motion_by_motion(receptance: ComplexArray, blocks: ComplexArray, samples: int) -> ComplexArray:
+    """Matrix of the motion at harmonic k by that at harmonic m.
+
+    From receptances (k, r, r) and forces at k by the motion at m (k, m, r, r), of which a period
+    has so many samples.
+    """
+    count, _, rank, _ = blocks.shape
+    # samples lie in the middle of their parts of the period
+    phase = np.exp(-1j * np.pi / samples * _differences(count))
+    force = (blocks * phase[:, :, None, None]).transpose(0, 2, 1, 3)
+    motion = receptance @ force.reshape(count, rank, count * rank)
+    return motion.reshape(count * rank, count * rank)
 
 
 @njit(**DRIVER)

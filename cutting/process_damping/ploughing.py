@@ -28,8 +28,8 @@ _SEPARATION_ANGLE = math.radians(37.6)
 #: nodes of the flank along the contact at rest, and behind it
 _NODES_OF_CONTACT = 40
 _NODES_BEHIND = 20
-#: samples of the wave over the contact at rest, at the least, where the steps are as short; and over
-#: the wave that is followed, at the most
+#: samples of the wave over the contact at rest, at the least, where the steps are that short; and
+#: over the wave that is followed, at the most
 _SAMPLES_OF_CONTACT = 8
 _MOST_SAMPLES = 4096
 #: the wave is followed until the clearance is this high, m

@@ -64,13 +64,17 @@ class Path(NamedTuple):
 
 
 def best_path(begin: Path, first: Stage, split: Split, progress: Progress) -> Path:
-    """Follow the best candidate and, where that does not lead to the noise, pairs of them.
+    """Follow the best candidate and, where that does not lead to the noise, richer forms and pairs.
 
     Of two effects that are missing, neither may do well alone, and a third best in their place.
     """
     best = gone_on(begin, first, split, progress)
     if best.over_noise(split.holdout) < NEAR_NOISE:
         return best
+    # far fewer are the richer forms of what was found than the pairs
+    richer = _in_other_forms(best, split, richer_forms, progress)
+    if richer.over_noise(split.holdout) < NEAR_NOISE:
+        return richer
     progress("fitting pairs of effects", 0.8)
     for path in _pairs(begin, first, best, split):
         best = _better(path, best, begin.problem, split)

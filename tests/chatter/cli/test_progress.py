@@ -80,6 +80,18 @@ def test_the_pace_is_that_of_late(clock):
     assert work.remaining() == pytest.approx(160.0, rel=0.1)
 
 
+def test_one_part_that_took_long_is_not_the_pace(clock):
+    """ "100 of 400 (25%), about 7.3 h left": the last one had taken a minute, all of them 160 s."""
+    work = RunningWork("limits", clock)
+    for done in range(100):  # one a second
+        work(done, 400)
+        clock.now += 1.0
+    clock.now += 60.0
+    work(100, 400)
+    # 300 more at 10 in 70 s, at the worst
+    assert 300.0 < work.remaining() <= 2100.0
+
+
 def test_a_first_part_that_took_long_is_pace(clock):
     work = RunningWork("points", clock)
     clock.now += 20.0
