@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections import deque
@@ -166,9 +167,16 @@ class RunningWork:
         if done >= total and self._newest is not None:
             since = in_words(self._clock() - self._newest[0])
             return f"{self.description}: all {total} done, evaluating the result for {since}"
+        return f"{self.description}: {done} of {total} ({done / total:.0%}){self._rest()}"
+
+    def _rest(self) -> str:
+        """How long the rest takes, where that is known."""
         left = self.remaining()
-        rest = "" if left is None else f", about {in_words(left)} left"
-        return f"{self.description}: {done} of {total} ({done / total:.0%}){rest}"
+        if left is None:
+            return ""
+        if left == 0.0:
+            return ", the next takes longer than those before"
+        return f", about {in_words(math.ceil(left))} left"
 
     def announcement(self) -> str | None:
         """Sentence, once, that the work takes minutes, as soon as its pace shows it."""

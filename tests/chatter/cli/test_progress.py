@@ -46,6 +46,8 @@ def test_the_time_left_is_that_of_the_pace_so_far(clock):
     assert work.remaining() == pytest.approx(26.0)
     clock.now += 40.0
     assert work.remaining() == 0.0
+    # "about 0 s left", for minutes
+    assert work.line() == "limits: 50 of 200 (25%), the next takes longer than those before"
 
 
 def test_one_part_alone_is_no_measure_of_how_far_it_is(clock):
