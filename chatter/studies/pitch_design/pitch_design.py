@@ -123,7 +123,7 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
 def _ranked_on(search: PitchSearch, designs: Sequence[Design], speeds: Array) -> tuple[Design, ...]:
     """Designs with their limits at and between finer speeds, best first."""
     finer = [search.refined(one, speeds) for one in designs]
-    certain = [replace(one, kept=_kept(search.model_of(one.pitch), one)) for one in finer]
+    certain = [_with_certain(search.model_of(one.pitch), one) for one in finer]
     return tuple(sorted(certain, key=lambda one: -one.score))
 
 
@@ -133,13 +133,17 @@ def _notes_on_best(search: PitchSearch, best: Design) -> tuple[str, ...]:
     return notes_of(found)
 
 
-def _kept(model: MillingModel, design: Design) -> float:
-    """Factor of the lowest limit of a design that edge forces and resting frictions leave."""
+def _with_certain(model: MillingModel, design: Design) -> Design:
+    """Design with what edge forces and resting frictions leave of its lowest limit."""
     at_rest = limits_with_resting_friction(model, zero_order_of(model, spindle_speeds(model.case)))
     effects = neglected_edge_forces(
         model, model.case.cut.axial_depth, np.array([design.lowest_limit])
     )
-    return at_rest.of_lowest * lowest_factor(effects)
+    kept = lowest_factor(effects)
+    taken_by = [f"{one.name} that set in at a chip of zero" for one in effects if kept < 1.0]
+    if at_rest.of_lowest < 1.0:
+        taken_by.append("frictions of axes at rest")
+    return replace(design, kept=at_rest.of_lowest * kept, taken_by=tuple(taken_by))
 
 
 def _speeds(case: Case, section: PitchDesign) -> tuple[Array, Array]:

@@ -153,7 +153,8 @@ class PitchResult(SavedResult):
         if min(self.best.kept, self.original.kept) >= 1.0:
             return ""
         shares = " and ".join(f"{1.0 - one.kept:.0%}" for one in (self.best, self.original))
-        return f" (less {shares}: edge forces that set in at a chip of zero, frictions at rest)"
+        causes = dict.fromkeys((*self.best.taken_by, *self.original.taken_by))
+        return f" (less {shares}: {', '.join(causes)})"
 
     def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
         """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml.

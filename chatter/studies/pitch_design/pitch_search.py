@@ -42,6 +42,7 @@ class Design(BriefRepr):
     lowest_speed: float = math.nan  # of the lowest limit, where it was sought between the speeds
     lowest_between: float = math.inf  # that limit, m
     kept: float = 1.0  # factor of it that edge forces and frictions at rest leave at least
+    taken_by: tuple[str, ...] = ()  # which of them take the rest
 
     @property
     def lowest_limit(self) -> float:
