@@ -43,7 +43,7 @@ def to_digits(value: float, digits: int = 2) -> str:
     return f"{float(short):.6g}" if 1.0 <= abs(float(short)) < 1e6 else short
 
 
-def told_apart(value: float, beside: float, digits: int = 4) -> str:
+def distinct_from(value: float, beside: float, digits: int = 4) -> str:
     """Number to so many significant digits, to more where it would read as the one beside it."""
     for more in range(digits, _MOST_DIGITS):
         if f"{value:.{more}g}" != f"{beside:.{more}g}":

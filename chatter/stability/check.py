@@ -12,7 +12,7 @@ from chatter.compile.cutter import cutter_of
 from chatter.compile.inclined_axis import diameter_in_cut, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
-from chatter.description.formatting import to_digits, told_apart
+from chatter.description.formatting import to_digits, distinct_from
 from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
@@ -196,7 +196,7 @@ class StabilityCheck(NotebookResult):
     def sentences(self) -> list[str]:
         """Verdict in words."""
         cut = self.case.cut
-        depth = told_apart(1e3 * cut.axial_depth, 1e3 * self.critical_depth)
+        depth = distinct_from(1e3 * cut.axial_depth, 1e3 * self.critical_depth)
         point = f"{depth} mm at {rpm(cut.spindle_speed):.6g} rpm"
         deciding, words = self.deciding, STABLE if self.stable else CHATTER
         if deciding:
@@ -247,7 +247,7 @@ class StabilityCheck(NotebookResult):
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             [
                 "spectral radius",
-                f"{told_apart(self.spectral_radius, 1.0)}{self._radius_by()} (below 1: stable)",
+                f"{distinct_from(self.spectral_radius, 1.0)}{self._radius_by()} (below 1: stable)",
             ],
             ["cutting speed", f"{to_digits(60.0 * speed, 4)} m/min"],
             *effective,
@@ -310,7 +310,7 @@ class StabilityCheck(NotebookResult):
 
     def _depth(self) -> str:
         if np.isfinite(self.critical_depth):
-            return f"{told_apart(1e3 * self.critical_depth, 1e3 * self.case.cut.axial_depth)} mm"
+            return f"{distinct_from(1e3 * self.critical_depth, 1e3 * self.case.cut.axial_depth)} mm"
         tool = self.case.tool
         reached = self.max_depth >= tool.depth_that_tool_allows * (1.0 - 1e-9)
         why = f", tool.{tool.limiting_length}" if reached else ""

@@ -2,7 +2,7 @@
 
 import pytest
 
-from chatter.description.formatting import told_apart
+from chatter.description.formatting import distinct_from
 
 
 @pytest.mark.parametrize(
@@ -19,4 +19,4 @@ from chatter.description.formatting import told_apart
     ],
 )
 def test_digits_tell_a_number_from_the_one_beside_it(value, beside, text):
-    assert told_apart(value, beside) == text
+    assert distinct_from(value, beside) == text
