@@ -12,7 +12,7 @@ from chatter.compile.cutter import cutter_of
 from chatter.compile.inclined_axis import diameter_in_cut, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
-from chatter.description.formatting import to_digits, distinct_from
+from chatter.description.formatting import distinct_from, to_digits
 from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
