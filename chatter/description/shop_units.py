@@ -54,7 +54,7 @@ _FRACTION = re.compile(
 _VULGAR = re.compile(r"([0-9]?)\s*([¼½¾⅐-⅞])")
 _FRACTION_SLASH = "\u2044"
 #: marks of an inch behind a number
-_INCH_MARK = re.compile(r"(?<=[0-9.])\s*(?:\"|″|”|'')")
+_INCH_MARK = re.compile(r"(?:(?<=[0-9])|(?<=[0-9]\.))\s*(?:\"|″|”|'')")
 _LENGTHS = ("mm", "um", "m", "in", "inch")
 
 

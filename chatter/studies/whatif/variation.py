@@ -216,10 +216,16 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
     return DIMENSIONS[kind.dimension].unit
 
 
+def _unquoted(end: str) -> str:
+    """End of a range without the quotes around it; a mark of an inch stays."""
+    end = end.strip()
+    return end[1:-1] if len(end) > 1 and end[0] == end[-1] == '"' else end
+
+
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
     where = f"--vary {path}"
     text, count = counted_range(where, text, DEFAULT_COUNT if count is None else count, MOST_VALUES)
-    low, _, high = (part.strip().strip('"') for part in with_decimals(text).partition(".."))
+    low, _, high = (with_decimals(_unquoted(part)) for part in text.partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
     if re.fullmatch(NUMBER, low) and unit:

@@ -30,6 +30,21 @@ def test_ranges_are_even_and_end_where_they_say(case):
     assert len(numbers("cut.axial_depth=1 mm..4 mm", case)[1]) == 5
 
 
+@pytest.mark.parametrize(
+    ("text", "unit", "values"),
+    [
+        ('"0.5 mm".."2 mm"', "mm", [0.5, 1.25, 2.0]),
+        ('"0.5".."2 mm"', "mm", [0.5, 1.25, 2.0]),
+        ('1/4"..1/2"', "in", [0.25, 0.375, 0.5]),
+        ('"1/4 in".."1/2 in"', "in", [0.25, 0.375, 0.5]),
+        ("1/4..1/2 in", "in", [0.25, 0.375, 0.5]),
+    ],
+)
+def test_ends_of_a_range_may_have_quotes_or_marks_of_an_inch(case, text, unit, values):
+    """The quote before an end was read as a mark of an inch: "in2 mm"."""
+    assert numbers(f"cut.axial_depth={text}", case, 3) == (unit, pytest.approx(values))
+
+
 def test_a_range_of_teeth_is_one_of_whole_numbers(case):
     assert numbers("tool.teeth=2..5", case) == ("", [2.0, 3.0, 4.0, 5.0])
     assert numbers("tool.teeth=2..6:3", case) == ("", [2.0, 4.0, 6.0])
