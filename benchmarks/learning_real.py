@@ -27,7 +27,7 @@ from chatter.learning.prior import prior_of
 
 _FOLDER = Path(__file__).parents[1] / "tests" / "data" / "stability-hajdu-2020"
 #: standard deviations that the paper states
-_STATED = {
+STATED = {
     "material.Ktc": "1095 +- 150 MPa",
     "material.Krc": "176 +- 50 MPa",
     "structure.mode[0].frequency": "782.7 +- 80 Hz",
@@ -94,7 +94,7 @@ def main() -> None:
     given = options.parse_args()
     case = chatter.load(_FOLDER / "case.toml")
     if given.declared_deviations:
-        case = case.patch(_STATED)
+        case = case.patch(STATED)
     every = read_cuts(_FOLDER / "points.csv", case)
     every = every.with_runs([run for run in every.runs if run.record == "stable"])
     stable = every.runs[0].signals["stable"]

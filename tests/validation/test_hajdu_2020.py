@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import chatter
+from benchmarks.learning_real import STATED
 from chatter.stability.methods.semi_discretization.arrays import milling_arrays
 from chatter.stability.methods.semi_discretization.multipliers import limit_curve, multipliers
 from chatter.stability.model import milling_model
@@ -64,19 +65,6 @@ def test_score_of_declared_and_refitted_parameters():
     assert right / count == pytest.approx(87 / 118, abs=0.05)
     assert better / count == pytest.approx(98 / 118, abs=0.05)
     assert better > right
-
-
-#: declared values with the standard deviations that their authors state
-STATED = {
-    "structure.mode[0].frequency": "782.7 +- 80 Hz",
-    "structure.mode[1].frequency": "752.8 +- 80 Hz",
-    "structure.mode[0].damping": "0.0184 +- 0.008",
-    "structure.mode[1].damping": "0.0186 +- 0.008",
-    "structure.mode[0].stiffness": "6.5616e6 +- 2e6 N/m",
-    "structure.mode[1].stiffness": "4.8852e6 +- 2e6 N/m",
-    "material.Ktc": "1095 +- 150 MPa",
-    "material.Krc": "176 +- 50 MPa",
-}
 
 
 @pytest.mark.nightly
