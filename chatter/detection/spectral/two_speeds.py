@@ -256,11 +256,16 @@ def _together(one: list[Segment], other: list[Segment]) -> list[tuple[Segment, S
     return found
 
 
+def _says(segment: Segment) -> str:
+    """All but when, as text: a nan is then that of another."""
+    return repr(replace(segment, begin=0.0, end=0.0))
+
+
 def _joined(segments) -> list[Segment]:
     """Neighbours that say the same are one."""
     found: list[Segment] = []
     for one in segments:
-        if found and replace(one, begin=0.0, end=0.0) == replace(found[-1], begin=0.0, end=0.0):
+        if found and _says(one) == _says(found[-1]):
             found[-1] = replace(found[-1], end=one.end)
         else:
             found.append(one)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import scipy
@@ -31,7 +32,10 @@ def read_matrices(path: Path) -> list[StoredMatrix]:
     require_square(path, (rows, columns))
     if layout == "array" and rows * columns > path.stat().st_size:
         raise MeasurementError(f"{path}: {rows} x {columns} entries do not fit into the file")
-    return [StoredMatrix(scipy.io.mmread(path))]
+    with warnings.catch_warnings():
+        # scipy 1.18 warns that it will return a sparse array; either kind does here
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return [StoredMatrix(scipy.io.mmread(path))]
 
 
 MATRIX_MARKET = Format(

@@ -10,9 +10,9 @@ from chatter.detection.spectral import frame_evidence
 from chatter.detection.spectral.frame_evidence import evidence_at
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import stated_alone
-from chatter.detection.spectral.segments import segments_of
+from chatter.detection.spectral.segments import Segment, segments_of
 from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
-from chatter.detection.spectral.two_speeds import judged
+from chatter.detection.spectral.two_speeds import _joined, judged
 from tests.chatter.detection.made_recordings import (
     RATE,
     chatter_line,
@@ -217,3 +217,10 @@ def test_a_wrong_speed_whose_harmonic_holds_the_chatter_is_not_stable():
     assert {one.verdict for one in segments_of(wrong)} == {"stable"}
     verdicts = {one.verdict for one in judged(replace(wrong, other_speed=other))}
     assert "stable" not in verdicts
+
+
+def test_segments_that_say_the_same_are_one_though_no_frequency_is_equal_to_itself():
+    def idle(begin, end):
+        return Segment(begin, end, "idle", float("nan"), "none", 0.9, 0.1, 50.0, "quiet")
+
+    assert [(one.begin, one.end) for one in _joined([idle(0.0, 1.0), idle(1.0, 2.0)])] == [(0, 2)]

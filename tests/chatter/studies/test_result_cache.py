@@ -4,6 +4,7 @@ import re
 import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 
 import pytest
 
@@ -46,7 +47,7 @@ def test_a_damaged_cache_is_told(tmp_path):
 def test_a_record_that_is_no_json_is_told(tmp_path):
     with ResultCache(tmp_path) as cache:
         cache["first"] = 1
-    with sqlite3.connect(tmp_path / FOLDER / "cache.db") as database:
+    with closing(sqlite3.connect(tmp_path / FOLDER / "cache.db")) as database, database:
         database.execute("UPDATE Cache SET value = '{half'")
     with ResultCache(tmp_path) as cache, pytest.raises(RunError, match="delete it"):
         cache["first"]
