@@ -192,7 +192,10 @@ def test_further_power_and_angles_by_hand():
     for chip, edge in (slot, saw, fly, chamfer):
         assert f"{chip:.2f} W" in PAGE
         assert f"{edge:.2f} W" in PAGE
+        assert f"{chip + edge:.4g} W" in PAGE
+    for chip, edge in (saw, fly, chamfer):
         assert f"power {chip + edge:.4g} W mean" in PAGE
+    assert f"power {sum(slot) / 745.69987:.4g} hp mean" in PAGE
     assert f"feed rate {feed:.4g} mm/min" in PAGE
     ends = [math.degrees(math.acos(y / 31.5)) for y in (20.0, -30.0)]
     assert f"{ends[0]:.4g} to {ends[1]:.4g} deg" in PAGE

@@ -11,8 +11,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
-from chatter.description.case import Case
-from chatter.description.usual_units import usual_unit
+from chatter.description.unit_system import unit_at
 from chatter.io.result_tables import require_kind
 from chatter.report.console import print_line
 
@@ -111,5 +110,4 @@ def _print_linear(diagram: BifurcationDiagram) -> None:
 
 def _in_unit(diagram: BifurcationDiagram, value: float) -> str:
     """Value of the path in the unit that people read it in."""
-    unit = usual_unit(Case, diagram.path)
-    return f"{value * unit.factor:.5g} {unit.name}".rstrip()
+    return unit_at(diagram.case, diagram.path).text(value, ".5g").rstrip()

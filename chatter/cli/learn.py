@@ -23,7 +23,7 @@ from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.formatting import to_digits
-from chatter.description.usual_units import usual_unit
+from chatter.description.usual_units import UsualUnit, usual_unit
 from chatter.report.console import print_answer, print_line, print_table
 from chatter.report.parameters import read_in
 
@@ -85,7 +85,7 @@ def _print_learnt(found: Learnt) -> None:
         print_line(
             f"{verdicts['right']} of {verdicts['judged']} verdicts are as the learnt case has them"
         )
-    _print_next_cut(summary)
+    _print_next_cut(summary, found.units.instead_of("mm"))
 
 
 def _row(one: dict) -> list[str]:
@@ -105,14 +105,15 @@ def _read_in(one: dict) -> tuple[str, float]:
     return usual_unit(Case, one["path"])
 
 
-def _print_next_cut(summary: dict) -> None:
+def _print_next_cut(summary: dict, length: UsualUnit) -> None:
     chosen = summary["next_cut"]
     if chosen is None:
         print_answer("no cut of the diagram is within the risk; allow more by --risk")
         return
     print_answer(
-        f"next cut: {chosen['axial_depth_mm']:.3g} mm at {chosen['spindle_speed_rpm']:.0f} rpm, "
-        f"stable with a probability of {chosen['probability_of_stability']:.0%}, expected to give "
+        f"next cut: {length.text(chosen['axial_depth_mm'], '.3g')} at "
+        f"{chosen['spindle_speed_rpm']:.0f} rpm, stable with a probability of "
+        f"{chosen['probability_of_stability']:.0%}, expected to give "
         f"{chosen['expected_information_bit']:.2g} bit"
     )
     if summary["nothing_left_to_learn"]:

@@ -26,6 +26,7 @@ from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import rounded_down, to_digits
+from chatter.description.usual_units import UsualUnit
 from chatter.io.result_tables import require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
@@ -161,15 +162,16 @@ def _serve(description: Case, options: LobesOptions) -> None:
 def _print_diagram(diagram: StabilityDiagram) -> None:
     from chatter.stability.neglected_effects import reasons_of
 
-    summary = diagram.summary()
+    summary, units = diagram.summary(), diagram.units
+    length, removal_rate = units.instead_of("mm"), units.instead_of("cm³/min")
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     depth, margin = summary["margin"]["depth"], summary["margin"]["spindle_speed"]
     rows = [
         [
             f"{pocket['spindle_speed_rpm']:.0f}",
-            f"{pocket['axial_depth_mm']:.3f}",
-            _millimetres(pocket["critical_depth_mm"], summary["max_axial_depth_mm"]),
-            to_digits(pocket["removal_rate_cm3_per_min"], 3),
+            _depth_of_pocket(pocket["axial_depth_mm"], length),
+            _limit(pocket["critical_depth_mm"], summary["max_axial_depth_mm"], length),
+            to_digits(pocket["removal_rate_cm3_per_min"] * removal_rate.factor, 3),
         ]
         for pocket in summary["pockets"]
     ]
@@ -181,7 +183,12 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     if rows:
         print_table(
             f"pockets worth using ({depth:.0%} below the limit, {margin:.1%} off in speed)",
-            ["speed [rpm]", "depth [mm]", "limit [mm]", "removal [cm³/min]"],
+            [
+                "speed [rpm]",
+                f"depth [{length.name}]",
+                f"limit [{length.name}]",
+                f"removal [{removal_rate.name}]",
+            ],
             rows,
         )
     elif diagram.why_no_pocket:
@@ -192,7 +199,8 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     if lowest["critical_depth_mm"] is not None:
         print_line(
             f"{_stable_below(lowest['stable_below_mm'], diagram)} (lowest limit "
-            f"{lowest['critical_depth_mm']:.4g} mm, at {lowest['spindle_speed_rpm']:.0f} rpm, "
+            f"{length.text(lowest['critical_depth_mm'])}, at "
+            f"{lowest['spindle_speed_rpm']:.0f} rpm, "
             f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz{_taken_off(diagram)})"
         )
     else:
@@ -201,9 +209,9 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     sure = "" if operating["certain"] else " by the linear analysis, not certain"
     print_answer(
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
-        f"{operating['axial_depth_mm']:.4g} mm: "
+        f"{length.text(operating['axial_depth_mm'])}: "
         f"{'stable' if operating['stable'] else 'chatter'}{sure}; "
-        f"limit there {_millimetres(limit, summary['max_axial_depth_mm'])} mm"
+        f"limit there {_limit(limit, summary['max_axial_depth_mm'], length)} {length.name}"
     )
     if not operating["certain"]:
         known = diagram.neglected_at_all_speeds if diagram.why_no_pocket else ()
@@ -222,7 +230,8 @@ def _stable_below(depth: float, diagram: StabilityDiagram) -> str:
         speeds = "any of these speeds"
         if not METHODS[diagram.method].is_linear:
             speeds = f"the {diagram.limits.spindle_speed.size} speeds computed, not between them,"
-        return f"stable at {speeds} below {rounded_down(depth)} mm"
+        length = diagram.units.instead_of("mm")
+        return f"stable at {speeds} below {rounded_down(depth * length.factor)} {length.name}"
     return "no depth is stable at any speed for certain"
 
 
@@ -231,7 +240,7 @@ def _without_limit(diagram: StabilityDiagram) -> str:
     deepest, tool = max(diagram.max_depth.tolist()), diagram.case.tool
     reached = deepest >= tool.depth_that_tool_allows * (1.0 - 1e-9)
     why = f", tool.{tool.limiting_length}" if reached else ", where the search ends"
-    return f"no limit at any of these speeds up to {1e3 * deepest:.4g} mm{why}"
+    return f"no limit at any of these speeds up to {diagram.units.length.text(deepest)}{why}"
 
 
 def _taken_off(diagram: StabilityDiagram) -> str:
@@ -247,5 +256,12 @@ def _taken_off(diagram: StabilityDiagram) -> str:
     return "".join(told)
 
 
-def _millimetres(depth: float | None, max_depth: float) -> str:
-    return f"> {max_depth:.4g}" if depth is None else f"{depth:.4g}"
+def _limit(depth: float | None, max_depth: float, length: UsualUnit) -> str:
+    """Limit, mm, as a number of a unit; how far was searched where there is none."""
+    sign, shown = ("> ", max_depth) if depth is None else ("", depth)
+    return f"{sign}{shown * length.factor:.4g}"
+
+
+def _depth_of_pocket(depth: float, length: UsualUnit) -> str:
+    """Depth, mm, to a thousandth of a mm, or a ten-thousandth of an inch."""
+    return f"{depth:.3f}" if length.factor == 1.0 else f"{depth * length.factor:.4f}"

@@ -14,7 +14,9 @@ from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import METRIC, UnitSystem
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.io.result_tables import KINDS, require_kind
 from chatter.report.console import print_answer, print_line, print_table
 
@@ -82,24 +84,28 @@ def simulate(
 
 
 def _print_summary(result: SimulationResult) -> None:
-    summary = result.summary()
+    summary, units = result.summary(), result.units
+    force, torque = units.force, units.torque
+    cutting_speed, feed_rate = units.instead_of("m/min"), units.instead_of("mm/min")
     peak, mean = summary["peak_force_N"], summary["mean_force_N"]
-    rows = [[name, _newtons(peak[name]), _newtons(mean[name])] for name in peak]
+    rows = [[name, _shown(peak[name], force), _shown(mean[name], force)] for name in peak]
     part = "in chatter" if summary["verdict"] == "chatter" else "settled cut"
-    print_table(f"force on the tool, {part}", ["", "peak [N]", "mean [N]"], rows)
+    headers = ["", f"peak [{force.name}]", f"mean [{force.name}]"]
+    print_table(f"force on the tool, {part}", headers, rows)
     power = summary["power"]
     print_line(
-        f"power {_watts(power['mean_W'])} mean, {_watts(power['peak_W'])} peak; "
-        f"torque {to_digits(power['mean_torque_Nm'], 3)} N m mean"
+        f"power {_power(power['mean_W'], units)} mean, {_power(power['peak_W'], units)} peak; "
+        f"torque {to_digits(power['mean_torque_Nm'] * torque.factor, 3)} {torque.name} mean"
     )
     print_line(
-        f"{_speed(result.case)}, cutting speed {summary['cutting_speed_m_per_min']:.4g} "
-        f"m/min{_speed_in_cut(result.case)}, "
-        f"feed rate {to_digits(summary['feed_rate_mm_per_min'], 4)} mm/min; "
-        f"displacement {to_digits(summary['peak_displacement_um'], 3)} um peak"
+        f"{_speed(result.case)}, cutting speed "
+        f"{cutting_speed.text(summary['cutting_speed_m_per_min'])}"
+        f"{_speed_in_cut(result.case, units)}, feed rate "
+        f"{to_digits(summary['feed_rate_mm_per_min'] * feed_rate.factor, 4)} {feed_rate.name}; "
+        f"displacement {_displacement(summary['peak_displacement_um'], units)} peak"
     )
-    _print_transient(summary)
-    for line in _surface(summary, _edge_angle(result)):
+    _print_transient(summary, units)
+    for line in _surface(summary, _edge_angle(result), units):
         print_line(line)
     frequency = summary["chatter_frequency_Hz"]
     at = "" if frequency is None else f" at {frequency:.1f} Hz"
@@ -108,12 +114,20 @@ def _print_summary(result: SimulationResult) -> None:
         print_line(result.linear.sentence())
 
 
-def _newtons(force: float) -> str:
+def _shown(force: float, unit: UsualUnit) -> str:
     """Force to four digits, and to a thousandth of a newton: below is rounding alone."""
-    return to_digits(round(force, 3) + 0.0, 4)
+    return to_digits((round(force, 3) + 0.0) * unit.factor, 4)
 
 
-def _watts(power: float) -> str:
+def _displacement(length: float, units: UnitSystem, digits: int = 3) -> str:
+    """Length, um, in the unit that is read."""
+    unit = units.instead_of("um")
+    return f"{to_digits(length * unit.factor, digits)} {unit.name}"
+
+
+def _power(power: float, units: UnitSystem) -> str:
+    if units is not METRIC:
+        return units.power.text(power)
     return f"{power:.4g} W" if abs(power) < _LARGE_POWER else f"{power / 1e3:.4g} kW"
 
 
@@ -121,15 +135,15 @@ def _speed(case: Case) -> str:
     return f"{to_digits(rpm(case.cut.spindle_speed), 4)} rpm"
 
 
-def _speed_in_cut(case: Case) -> str:
+def _speed_in_cut(case: Case, units: UnitSystem) -> str:
     """Largest diameter in the cut and the speed there, where it is another than the diameter."""
     from chatter.compile.inclined_axis import diameter_in_cut
 
     wide = None if case.stock is not None else diameter_in_cut(case)
     if wide is None:
         return ""
-    there = 30.0 * wide * case.cut.spindle_speed
-    return f" on the diameter, {there:.4g} m/min on the {1e3 * wide:.4g} mm that cut"
+    there = units.cutting_speed.text(0.5 * wide * case.cut.spindle_speed)
+    return f" on the diameter, {there} on the {units.length.text(wide)} that cut"
 
 
 def _edge_angle(result: SimulationResult) -> float:
@@ -144,7 +158,7 @@ def _edge_angle(result: SimulationResult) -> float:
     return math.degrees(cutter.edge_angle)
 
 
-def _surface(summary: dict, edge_angle: float) -> list[str]:
+def _surface(summary: dict, edge_angle: float, units: UnitSystem) -> list[str]:
     """Lines on what the cut leaves behind: wall and floor, each where it makes one."""
     location, rough = summary["surface_location"], summary["roughness"]
     wall, floor = summary["surface_location_error_um"], location["floor_um"]
@@ -152,14 +166,14 @@ def _surface(summary: dict, edge_angle: float) -> list[str]:
     name = "wall" if edge_angle > _UPRIGHT else f"shoulder at {edge_angle:.3g} deg"
     lines = []
     if wall is not None:
-        error = f"surface location error {to_digits(wall, 3)} um (too {_removed(wall)} removed)"
-        lines.append(f"{name}: {error}{_roughness(rough['wall'])}")
+        shown = f"{_displacement(wall, units)} (too {_removed(wall)} removed)"
+        lines.append(f"{name}: surface location error {shown}{_roughness(rough['wall'], units)}")
     if floor is not None:
-        depth = f"{to_digits(abs(floor), 3)} um too {'high' if floor < 0.0 else 'deep'}"
-        lines.append(f"floor: {depth}{_roughness(rough['floor'])}")
+        depth = f"{_displacement(abs(floor), units)} too {'high' if floor < 0.0 else 'deep'}"
+        lines.append(f"floor: {depth}{_roughness(rough['floor'], units)}")
     scallops = summary.get("scallop_height_um")
     if scallops is not None:
-        lines.append(f"between passes: scallops of {to_digits(scallops, 3)} um")
+        lines.append(f"between passes: scallops of {_displacement(scallops, units)}")
     return lines if edge_angle > _UPRIGHT else lines[::-1]
 
 
@@ -168,20 +182,25 @@ def _removed(error: float) -> str:
     return "little" if error < 0.0 else "much"
 
 
-def _roughness(heights: dict) -> str:
+def _roughness(heights: dict, units: UnitSystem) -> str:
     if heights["Ra_um"] is None:
         return ""
-    return f", Ra {to_digits(heights['Ra_um'], 3)} um, Rz {to_digits(heights['Rz_um'], 3)} um"
+    unit, factor = units.instead_of("um", "roughness")
+    mean, depth = (to_digits(heights[key] * factor, 3) for key in ("Ra_um", "Rz_um"))
+    return f", Ra {mean} {unit}, Rz {depth} {unit}"
 
 
-def _print_transient(summary: dict) -> None:
+def _print_transient(summary: dict, units: UnitSystem) -> None:
     """Print what the start exceeds the settled cut by, where it does."""
     start = summary.get("transient")
     if start is None:
         return
     above = [
-        f"{to_digits(start[key], 4)} {unit}"
-        for key, unit in (("peak_resultant_N", "N"), ("peak_displacement_um", "um"))
+        f"{to_digits(start[key] * unit.factor, 4)} {unit.name}"
+        for key, unit in (
+            ("peak_resultant_N", units.force),
+            ("peak_displacement_um", units.instead_of("um")),
+        )
         if start[key] > _NOTABLE * summary[key]
     ]
     if above:

@@ -77,19 +77,19 @@ def uncertainty(options: UncertaintyOptions) -> None:
 
 
 def _print_probability(found: Uncertainty) -> None:
-    summary = found.summary()
+    summary, length = found.summary(), found.units.instead_of("mm")
     point, limit = summary["operating_point"], summary["limit_at_operating_speed_mm"]
     low, high = point["confidence_interval_95"]
     print_line(
-        f"{point['axial_depth_mm']:.4g} mm at {point['spindle_speed_rpm']:.0f} rpm is stable with "
-        f"a probability of {point['probability_of_stability']:.1%} (95 % confidence: {low:.1%} to "
-        f"{high:.1%}, {summary['samples']} samples)"
+        f"{length.text(point['axial_depth_mm'])} at {point['spindle_speed_rpm']:.0f} rpm is "
+        f"stable with a probability of {point['probability_of_stability']:.1%} "
+        f"(95 % confidence: {low:.1%} to {high:.1%}, {summary['samples']} samples)"
     )
     left = found.for_certain_in_words()
     if left:
         print_line(left)
     ends = [
-        "none found" if limit[key] is None else f"{limit[key]:.4g} mm"
+        "none found" if limit[key] is None else length.text(limit[key])
         for key in ("5_percent", "50_percent", "95_percent")
     ]
     print_line(f"critical depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")

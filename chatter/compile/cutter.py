@@ -9,6 +9,7 @@ from chatter.compile.worn_flank import land_forces
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.sections.process import ProcessDamping
+from chatter.description.unit_system import units_of
 from cutting.force.law import ForceLaw
 from cutting.force.laws import edge_law_table
 from cutting.process_damping.flank import BareFlank, ProcessDampingLaw
@@ -98,11 +99,11 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
             f"{case.name}: tool.edge_radius: neither edge_radius nor flank_wear is given; "
             "process_damping.indentation_force needs one of them"
         )
-    longest = _LONGEST_LAND * tool.diameter
+    longest, length = _LONGEST_LAND * tool.diameter, units_of(case).length
     if tool.flank_wear and tool.flank_wear > longest:
         problems.append(
-            f"{case.name}: tool.flank_wear: {tool.flank_wear * 1e3:g} mm is out of range; a land "
-            f"that ploughs is at most a tenth of the diameter, {longest * 1e3:g} mm"
+            f"{case.name}: tool.flank_wear: {length.text(tool.flank_wear, 'g')} is out of range; "
+            f"a land that ploughs is at most a tenth of the diameter, {length.text(longest, 'g')}"
         )
     if problems:
         raise InputError(problems)

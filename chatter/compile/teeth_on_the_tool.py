@@ -2,6 +2,7 @@
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.unit_system import units_of
 
 #: of the radius, by which a tooth may be off its place
 _FURTHEST = 0.2
@@ -12,20 +13,20 @@ def refuse_teeth_off_the_tool(case: Case) -> None:
 
     And waves of an edge that would reach the axis.
     """
-    tool = case.tool
+    tool, length = case.tool, units_of(case).length
     most = _FURTHEST * 0.5 * tool.diameter
     given = {"runout.offset": (tool.runout.offset,) if tool.runout else ()}
     given |= {"radial_error": tool.radial_error or (), "axial_error": tool.axial_error or ()}
     problems = [
-        f"{case.name}: tool.{key}: {max(map(abs, values)) * 1e3:g} mm is more than a tenth of the "
-        f"diameter, {tool.diameter * 1e3:g} mm"
+        f"{case.name}: tool.{key}: {length.text(max(map(abs, values)), 'g')} is more than a tenth "
+        f"of the diameter, {length.text(tool.diameter, 'g')}"
         for key, values in given.items()
         if values and max(map(abs, values)) > most
     ]
     if tool.serration is not None and tool.serration.depth >= 0.5 * tool.diameter:
         problems.append(
-            f"{case.name}: tool.serration.depth: {tool.serration.depth * 1e3:g} mm is not less "
-            f"than the radius of the tool, {tool.diameter * 500.0:g} mm"
+            f"{case.name}: tool.serration.depth: {length.text(tool.serration.depth, 'g')} is not "
+            f"less than the radius of the tool, {length.text(0.5 * tool.diameter, 'g')}"
         )
     if problems:
         raise InputError(problems)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.description.case import Case
+from chatter.description.unit_system import units_of
 from cutting.force.law import ForceLaw
 
 #: pressure on the land over the tangential cutting pressure, and friction, where the case gives
@@ -50,19 +51,21 @@ def notes_on_worn_flank(case: Case, law: ForceLaw) -> list[str]:
     land = case.tool.flank_wear
     if not land:
         return _notes_on_life(case)
-    found = land_forces(case, law)
+    found, units = land_forces(case, law), units_of(case)
     notes = []
     if case.wear is None or case.wear.flank_pressure is None:
+        pressure, line_force = units.pressure, units.line_force
         notes.append(
-            f"tool.flank_wear: the land is taken to press with {found.pressure / 1e6:.3g} MPa, a "
-            f"tenth of the tangential cutting pressure: {found.tangential / 1e3:.3g} N/mm "
-            f"tangential and {found.radial / 1e3:.3g} N/mm radial more; wear.flank_pressure and "
+            f"tool.flank_wear: the land is taken to press with "
+            f"{pressure.text(found.pressure, '.3g')}, a tenth of the tangential cutting pressure: "
+            f"{line_force.text(found.tangential, '.3g')} tangential and "
+            f"{line_force.text(found.radial, '.3g')} radial more; wear.flank_pressure and "
             "wear.flank_friction state your own"
         )
     if land > END_OF_LIFE * (1.0 + 1e-9):
         notes.append(
-            f"tool.flank_wear: {land * 1e3:g} mm is beyond the usual end of life, "
-            f"{END_OF_LIFE * 1e3:g} mm (ISO 8688-2)"
+            f"tool.flank_wear: {units.length.text(land, 'g')} is beyond the usual end of life, "
+            f"{units.length.text(END_OF_LIFE, 'g')} (ISO 8688-2)"
         )
     return notes + _notes_on_life(case)
 
@@ -77,7 +80,7 @@ def _notes_on_life(case: Case) -> list[str]:
         return []
     return [
         f"cut.cut_time: {case.cut.cut_time / 60.0:.3g} min is beyond the life of the edge at "
-        f"{60.0 * speed:.4g} m/min, {life / 60.0:.3g} min (tool_life)"
+        f"{units_of(case).cutting_speed.text(speed)}, {life / 60.0:.3g} min (tool_life)"
     ]
 
 

@@ -49,6 +49,7 @@ from chatter.description.stated_engagement import (
 )
 from chatter.description.toml_document import move_references
 from chatter.description.toml_editing import Layout
+from chatter.description.unit_system import units_of_content
 from chatter.description.whole_files import write_whole
 from chatter.description.without_effect import keys_without_effect
 from cutting.engagement.uncut_band import UncutBand
@@ -127,11 +128,11 @@ class Case(Description):
         return unsolved(data)
 
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
-        del data
+        length = units_of_content(data).length
         return [
-            *depth_problems(self.cut, self.tool),
+            *depth_problems(self.cut, self.tool, length),
             *friction_problems(self.structure, self.friction),
-            *optimum_problems(self.optimum, self.cut, self.tool),
+            *optimum_problems(self.optimum, self.cut, self.tool, length),
             *problems_of_terms(self.empirical),
         ]
 

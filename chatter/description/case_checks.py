@@ -7,19 +7,21 @@ from chatter.description.sections.friction import Friction
 from chatter.description.sections.optimisation import Optimum
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
+from chatter.description.usual_units import UsualUnit
 
 #: m, which no tool cuts
 _NO_DEPTH = 0.5
 
 
-def depth_problems(cut: Cut | None, tool: Tool | None) -> list[tuple[str, str]]:
-    """Check the axial depth against what the tool can cut.
+def depth_problems(cut: Cut | None, tool: Tool | None, length: UsualUnit) -> list[tuple[str, str]]:
+    """Check the axial depth against what the tool can cut, in words with a unit of length.
 
     Path and sentence of what is wrong are returned.
     """
     if cut is None or tool is None or cut.axial_depth <= tool.depth_that_tool_allows * (1.0 + 1e-9):
         return []
-    depth, deepest = f"{cut.axial_depth * 1e3:g} mm", f"{tool.depth_that_tool_allows * 1e3:g} mm"
+    depth = length.text(cut.axial_depth, "g")
+    deepest = length.text(tool.depth_that_tool_allows, "g")
     # no tool cuts a metre deep: the number has no unit, or one that is not meant
     meant = f'; is "{cut.axial_depth:g} mm" meant?' if cut.axial_depth >= _NO_DEPTH else ""
     text = f"{depth} is more than tool.{tool.limiting_length}, {deepest}{meant}"
@@ -45,9 +47,9 @@ def friction_problems(
 
 
 def optimum_problems(
-    optimum: Optimum | None, cut: Cut | None, tool: Tool | None
+    optimum: Optimum | None, cut: Cut | None, tool: Tool | None, length: UsualUnit
 ) -> list[tuple[str, str]]:
-    """Check the radial depths of [optimum] against the cut and the tool.
+    """Check the radial depths of [optimum] against cut and tool, in words with a unit of length.
 
     Path and sentence of what is wrong are returned.
     """
@@ -60,7 +62,8 @@ def optimum_problems(
         text = "varies cut.radial_depth, which [cut] does not state; leave it out, or state it"
         return [("optimum.radial_depths", text)]
     if optimum.radial_depths.to > tool.diameter * (1.0 + 1e-9):
-        width, size = f"{optimum.radial_depths.to * 1e3:g} mm", f"{tool.diameter * 1e3:g} mm"
+        width = length.text(optimum.radial_depths.to, "g")
+        size = length.text(tool.diameter, "g")
         text = f"{width} is more than the diameter of the tool, {size}"
         return [("optimum.radial_depths.to", text)]
     return []

@@ -69,11 +69,12 @@ def _out_of_range(case: Case, row: MaterialRow) -> list[str]:
         return []
     thickest = thickest_chip(case)
     low, high = row.chip_thickness
+    length = units_of(case).length
     if low <= thickest <= high:
         return []
     return [
-        f"material.name: the thickest chip is {1e3 * thickest:.3g} mm, out of the range of the "
-        f"row, {1e3 * low:g} to {1e3 * high:g} mm"
+        f"material.name: the thickest chip is {length.text(thickest, '.3g')}, out of the range of "
+        f"the row, {low * length.factor:.4g} to {length.text(high)}"
     ]
 
 

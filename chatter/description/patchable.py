@@ -338,6 +338,11 @@ class Description(Section):
         self._collect_deviations(self._plain(), (), found)
         return found
 
+    @property
+    def stated(self) -> Mapping[str, Any]:
+        """What the file states, in its units, with all that was set in it."""
+        return self._plain()
+
     def to_toml(self) -> str:
         """Return the file, with the comments, the order and the units of its source."""
         return tomlkit.dumps(self._source())

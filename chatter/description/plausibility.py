@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from chatter.description.errors import InputError
+from chatter.description.unit_system import units_of
 from chatter.description.usual_units import of_dimension
 
 if TYPE_CHECKING:
@@ -53,10 +54,11 @@ def check_plausible(case: Case) -> None:
     angles = helix if isinstance(helix, tuple) else (helix,)
     deepest = max(case.cut.axial_depth, _value(case, "lobes.depths.to") or 0.0)
     where = "cut.axial_depth" if deepest == case.cut.axial_depth else "lobes.depths.to"
+    length = units_of(case).length
     lag = max(abs(math.tan(angle)) for angle in angles) * deepest / (0.5 * case.tool.diameter)
     if not problems and lag > _LARGEST_LAG:
         problems.append(
-            f"{case.name}: {where}: within {deepest * 1e3:g} mm the edge winds "
+            f"{case.name}: {where}: within {length.text(deepest, 'g')} the edge winds "
             f"{lag / (2.0 * math.pi):.3g} times around the tool, with its tool.diameter and "
             f"tool.helix; at most {_LARGEST_LAG / (2.0 * math.pi):.0f} are allowed; a bare number "
             "is in m"
@@ -64,8 +66,8 @@ def check_plausible(case: Case) -> None:
     wave = case.tool.serration
     if not problems and wave is not None and deepest > _MOST_WAVES * wave.wavelength:
         problems.append(
-            f"{case.name}: tool.serration.wavelength: {wave.wavelength * 1e3:g} mm makes "
-            f"{deepest / wave.wavelength:.3g} waves within {deepest * 1e3:g} mm; at most "
+            f"{case.name}: tool.serration.wavelength: {length.text(wave.wavelength, 'g')} makes "
+            f"{deepest / wave.wavelength:.3g} waves within {length.text(deepest, 'g')}; at most "
             f"{_MOST_WAVES:.0f} are allowed"
         )
     if problems:
@@ -76,17 +78,18 @@ def _softest_mode(case: Case) -> list[str]:
     """Say which mode is softer by far than the cut, as one whose stiffness is in another unit."""
     if case.material is None or not case.material.Ktc or case.structure is None:
         return []
-    cut = case.material.Ktc * case.cut.axial_depth
+    cut, units = case.material.Ktc * case.cut.axial_depth, units_of(case)
     problems = []
     for index, mode in enumerate(case.structure.mode):
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
         in_plane = math.hypot(mode.direction[0], mode.direction[1]) ** 2
         if cut * in_plane > _STIFFEST_CUT * stiffness:
             problems.append(
-                f"{case.name}: structure.mode[{index}].stiffness: {stiffness * 1e-6:.3g} N/um is "
-                f"{cut * in_plane / stiffness:.2g} times less than a cut of "
-                f"{case.cut.axial_depth * 1e3:g} mm has (material.Ktc times cut.axial_depth); at "
-                f"most {_STIFFEST_CUT:g} times is allowed; a bare number is in N/m"
+                f"{case.name}: structure.mode[{index}].stiffness: "
+                f"{units.stiffness.text(stiffness, '.3g')} is {cut * in_plane / stiffness:.2g} "
+                f"times less than a cut of {units.length.text(case.cut.axial_depth, 'g')} has "
+                f"(material.Ktc times cut.axial_depth); at most {_STIFFEST_CUT:g} times is "
+                "allowed; a bare number is in N/m"
             )
     return problems
 

@@ -6,9 +6,11 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import METRIC, UnitSystem, units_of
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
+    from chatter.description.usual_units import UsualUnit
 
 
 class _Usual(NamedTuple):
@@ -44,15 +46,15 @@ _MOST_GROWTH = 1e3
 
 def questions(case: Case) -> list[str]:
     """Sentences on values of a case that are far from what is usual."""
-    asked = []
+    asked, units = [], units_of(case)
     for index, mode in enumerate(case.structure.mode if case.structure else ()):
         path = f"structure.mode[{index}]"
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
-        asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS)
+        asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS, units)
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
     if case.structure is not None and case.structure.friction_amplitude:
         given = case.structure.friction_amplitude
-        asked += _question("structure.friction_amplitude", given, _AMPLITUDE)
+        asked += _question("structure.friction_amplitude", given, _AMPLITUDE, units)
     asked += _question_of_stiff_tool(case)
     asked += _questions_of_material(case)
     if case.process_damping is not None and case.process_damping.coefficient:
@@ -60,12 +62,12 @@ def questions(case: Case) -> list[str]:
         asked += _question("process_damping.coefficient", given, _PROCESS_DAMPING)
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
-        asked += _question("cutting speed", speed, _CUTTING_SPEED)
-        asked += _question("tool.diameter", case.tool.diameter, _DIAMETER)
+        asked += _question("cutting speed", speed, _CUTTING_SPEED, units)
+        asked += _question("tool.diameter", case.tool.diameter, _DIAMETER, units)
         asked += _question_of_depth(case)
         asked += _question_of_feed(case)
         if case.tool.runout is not None:
-            asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT)
+            asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT, units)
     return asked
 
 
@@ -74,40 +76,41 @@ def _questions_of_material(case: Case) -> list[str]:
     material = case.material
     if material is None:
         return []
-    asked = []
+    asked, units = [], units_of(case)
     if material.Ktc:
-        asked += _question("material.Ktc", material.Ktc, _PRESSURE)
+        asked += _question("material.Ktc", material.Ktc, _PRESSURE, units)
     for key in ("Kte", "Kre"):
         value = getattr(material, key)
         if value and value > 0.0:
-            asked += _question(f"material.{key}", value, _EDGE)
+            asked += _question(f"material.{key}", value, _EDGE, units)
     if material.Ktc and material.Krc and material.Krc > _LARGEST_RADIAL * material.Ktc:
         asked.append(
-            f"material.Krc: is {1e-6 * material.Krc:.4g} MPa meant? the radial coefficient is "
-            f"{material.Krc / material.Ktc:.2g} times the tangential one; most metals have 0.1 to 1"
+            f"material.Krc: is {units.pressure.text(material.Krc)} meant? the radial "
+            f"coefficient is {material.Krc / material.Ktc:.2g} times the tangential one; most "
+            "metals have 0.1 to 1"
         )
     return asked
 
 
 def _question_of_feed(case: Case) -> list[str]:
     """Ask about a chip that no edge of a tool of its diameter takes."""
-    feed, diameter = case.cut.feed_per_tooth, case.tool.diameter
+    feed, diameter, units = case.cut.feed_per_tooth, case.tool.diameter, units_of(case)
     if feed <= _LARGEST_FEED * diameter:
         return []
     return [
-        f"cut.feed_per_tooth: is {1e3 * feed:.3g} mm meant? that is {feed / diameter:.0%} of the "
-        f"diameter, {60e3 * case.feed_speed:.0f} mm/min"
+        f"cut.feed_per_tooth: is {units.length.text(feed, '.3g')} meant? that is "
+        f"{feed / diameter:.0%} of the diameter, {units.feed_rate.text(case.feed_speed, '.0f')}"
     ]
 
 
 def _question_of_depth(case: Case) -> list[str]:
     """Ask about a cut deeper than any tool of its diameter cuts."""
-    depth, diameter = case.cut.axial_depth, case.tool.diameter
+    depth, diameter, length = case.cut.axial_depth, case.tool.diameter, units_of(case).length
     if depth <= _DEEPEST * diameter:
         return []
     return [
-        f"cut.axial_depth: is {1e3 * depth:.4g} mm meant? flutes of a tool of "
-        f"{1e3 * diameter:.4g} mm are hardly longer than {1e3 * _DEEPEST * diameter:.4g} mm"
+        f"cut.axial_depth: is {length.text(depth)} meant? flutes of a tool of "
+        f"{length.text(diameter)} are hardly longer than {length.text(_DEEPEST * diameter)}"
     ]
 
 
@@ -121,8 +124,8 @@ def question_of_flutes(case: Case, depth: float) -> list[str]:
     if stated or not math.isfinite(depth) or depth <= _COMMON_FLUTES * tool.diameter:
         return []
     return [
-        f"{1e3 * depth:.3g} mm are {depth / tool.diameter:.2g} diameters of the tool: state "
-        "tool.flute_length, and no depth goes beyond it"
+        f"{units_of(case).length.text(depth, '.3g')} are {depth / tool.diameter:.2g} "
+        "diameters of the tool: state tool.flute_length, and no depth goes beyond it"
     ]
 
 
@@ -141,11 +144,12 @@ def _question_of_stiff_tool(case: Case) -> list[str]:
             if mode.side == "tool"
         )
         if compliance and 1.0 / compliance > _STIFFER * solid:
-            given, most = (to_digits(1e-6 * one, 3) for one in (1.0 / compliance, solid))
+            (unit, factor), length = units_of(case).stiffness, units_of(case).length
+            given, most = (to_digits(factor * one, 3) for one in (1.0 / compliance, solid))
             return [
-                f"structure.mode: are {given} N/um along {name} meant? a solid "
-                f"carbide tool of {1e3 * tool.diameter:g} mm that stands out "
-                f"{1e3 * tool.stick_out:g} mm (tool.stick_out) has at most {most} N/um"
+                f"structure.mode: are {given} {unit} along {name} meant? a solid "
+                f"carbide tool of {length.text(tool.diameter, 'g')} that stands out "
+                f"{length.text(tool.stick_out, 'g')} (tool.stick_out) has at most {most} {unit}"
             ]
     return []
 
@@ -172,11 +176,18 @@ def stick_out_compliance(
     return 64.0 * thirds / (3.0 * math.pi * _CARBIDE)
 
 
-def _question(name: str, value: float, usual: _Usual) -> list[str]:
+def _end(value: float, read: UsualUnit) -> str:
+    """End of a usual range: round as it stands, to two digits in another unit."""
+    return f"{value:g}" if read.factor == 1.0 else to_digits(value, 2)
+
+
+def _question(name: str, value: float, usual: _Usual, units: UnitSystem = METRIC) -> list[str]:
     if usual.low <= value <= usual.high:
         return []
-    ends = f"{usual.low * usual.factor:g} to {usual.high * usual.factor:g} {usual.unit}".rstrip()
-    given = f"{to_digits(value * usual.factor, 3)} {usual.unit}".rstrip()
+    read = units.instead_of(usual.unit)
+    unit, factor = read.name, usual.factor * read.factor
+    ends = f"{_end(usual.low * factor, read)} to {_end(usual.high * factor, read)} {unit}".rstrip()
+    given = f"{to_digits(value * factor, 3)} {unit}".rstrip()
     return [f"{name}: is {given} meant? {usual.of} have {ends}"]
 
 

@@ -17,6 +17,10 @@ class UsualUnit(NamedTuple):
     name: str
     factor: float
 
+    def text(self, value: float, form: str = ".4g") -> str:
+        """Value, SI, in the unit, and its name."""
+        return f"{value * self.factor:{form}} {self.name}"
+
 
 _USUAL = {
     "length": UsualUnit("mm", 1e3),

@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.explain.measurement import Measurement, Run
 from chatter.learning.cuts import TEST
 
@@ -34,7 +36,8 @@ def contradictions(measurement: Measurement) -> list[str]:
     judged = _judged(measurement)
     if judged is None:
         return []
-    return [*_of_one_cut(judged), *_deeper(judged)]
+    length = units_of(measurement.case).length
+    return [*_of_one_cut(judged, length), *_deeper(judged, length)]
 
 
 def surprises(measurement: Measurement, probability: Array) -> list[str]:
@@ -42,12 +45,13 @@ def surprises(measurement: Measurement, probability: Array) -> list[str]:
     judged = _judged(measurement)
     if judged is None:
         return []
-    stable = judged.signals["stable"] > 0.5
+    stable, length = judged.signals["stable"] > 0.5, units_of(measurement.case).length
     believed = np.where(stable, probability, 1.0 - probability)
     worst = [int(k) for k in np.argsort(believed) if believed[k] < _UNBELIEVABLE]
     notes = [
-        f"test {_number(judged, k)}, {_verdict(judged, k)} at {_cut(judged, k)}: the learnt case "
-        f"gives that {believed[k]:.1%}; check its verdict and its units, or what the case lacks"
+        f"test {_number(judged, k)}, {_verdict(judged, k)} at {_cut(judged, k, length)}: the "
+        f"learnt case gives that {believed[k]:.1%}; check its verdict and its units, or what the "
+        "case lacks"
         for k in worst[:_MOST_NOTES]
     ]
     if len(worst) > _MOST_NOTES:
@@ -60,7 +64,7 @@ def _judged(measurement: Measurement) -> Run | None:
     return next((run for run in measurement.runs if run.record == "stable"), None)
 
 
-def _of_one_cut(run: Run) -> list[str]:
+def _of_one_cut(run: Run, length: UsualUnit) -> list[str]:
     stable = run.signals["stable"] > 0.5
     notes, told = [], np.zeros(stable.size, dtype=bool)
     for k in range(stable.size):
@@ -69,13 +73,13 @@ def _of_one_cut(run: Run) -> list[str]:
             told |= same
             notes.append(
                 f"tests {_numbers(run, same & stable)} (stable) and "
-                f"{_numbers(run, same & ~stable)} (chatter) are one cut, {_cut(run, k)}: one "
-                "verdict is wrong, or the cut is at its limit"
+                f"{_numbers(run, same & ~stable)} (chatter) are one cut, {_cut(run, k, length)}: "
+                "one verdict is wrong, or the cut is at its limit"
             )
     return _first(notes, "cuts are judged both ways")
 
 
-def _deeper(run: Run) -> list[str]:
+def _deeper(run: Run, length: UsualUnit) -> list[str]:
     stable, depth = run.signals["stable"] > 0.5, run.signals["axial_depth"]
     notes = []
     for k in np.flatnonzero(stable):
@@ -84,9 +88,9 @@ def _deeper(run: Run) -> list[str]:
         if shallower.size:
             least = int(shallower[np.argmin(depth[shallower])])
             notes.append(
-                f"test {_number(run, int(k))} is stable at {_cut(run, int(k))}, deeper than test "
-                f"{_number(run, least)}, which chatters at {1e3 * depth[least]:.4g} mm: is one "
-                "verdict wrong?"
+                f"test {_number(run, int(k))} is stable at {_cut(run, int(k), length)}, deeper "
+                f"than test {_number(run, least)}, which chatters at {length.text(depth[least])}: "
+                "is one verdict wrong?"
             )
     return _first(notes, "stable tests are deeper than one that chatters")
 
@@ -122,6 +126,6 @@ def _verdict(run: Run, index: int) -> str:
     return "stable" if run.signals["stable"][index] > 0.5 else "chatter"
 
 
-def _cut(run: Run, index: int) -> str:
+def _cut(run: Run, index: int, length: UsualUnit) -> str:
     depth, speed = run.signals["axial_depth"][index], run.signals["spindle_speed"][index]
-    return f"{1e3 * depth:.4g} mm and {rpm(float(speed)):.0f} rpm"
+    return f"{length.text(depth)} and {rpm(float(speed)):.0f} rpm"

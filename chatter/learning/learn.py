@@ -15,6 +15,7 @@ from chatter.description.described_or_path import described_or_read
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.given_values import share_given, whole_number_given
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.explain.kinds.stability import Stability, likely_stable
 from chatter.explain.measurement import Measurement
@@ -38,6 +39,7 @@ from chatter.learning.next_cut import AIMS, INFORMATION, LEAST_INFORMATION, Next
 from chatter.learning.posterior import Particles, Progress, prior_particles, updated
 from chatter.learning.prior import SCATTER_OF_LIMITS, of_a_turning_tool, prior_of, with_wear
 from chatter.stability.search_range import spindle_speeds
+from chatter.studies.optimisation.operating_point import with_feed_per_tooth
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -84,6 +86,11 @@ class Learnt(NotebookResult):
     first: ParticleDiagram
     aim: str
     risk: float
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
 
     @property
     def next_cut(self) -> NextCut | None:
@@ -223,7 +230,7 @@ class Learnt(NotebookResult):
         cases = {"case-updated.toml": updated}
         chosen = self.next_cut
         if chosen is not None:
-            cases["next-cut.toml"] = updated.patch(
+            at = updated.patch(
                 {
                     "cut.spindle_speed": f"{rpm(chosen.spindle_speed):.6g} rpm",
                     "cut.axial_depth": in_declared_unit(
@@ -231,6 +238,8 @@ class Learnt(NotebookResult):
                     ),
                 }
             )
+            # a case that states the rate of the feed has another chip at another speed
+            cases["next-cut.toml"] = with_feed_per_tooth(at, updated.cut.feed_per_tooth)
         for name, case in cases.items():
             case.save(Path(folder) / name)
         self.problem.predictions.kept.discard()

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chatter.description.case import Case
-from chatter.description.usual_units import usual_unit
+from chatter.description.unit_system import unit_at
 from chatter.plots.style import BLUE, GREY, RED, UNSTABLE_FILL, finish, new_figure
 
 if TYPE_CHECKING:
@@ -25,7 +24,9 @@ _BESIDE = 0.015
 
 def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     """Plot Poincaré sections of the displacement over the value that varies."""
-    unit, factor = usual_unit(Case, diagram.path)
+    unit, factor = unit_at(diagram.case, diagram.path)
+    of_motion = diagram.units.displacement.factor
+    unit_of_motion = diagram.units.instead_of("µm").name
     sizes = [
         max(np.abs(point.poincare_section[:, axis]).max(initial=0.0) for point in diagram.points)
         for axis in range(3)
@@ -35,7 +36,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     panels = figure.subplots(len(moving), 1, sharex=True, squeeze=False)[:, 0]
     for panel, axis in zip(panels, moving, strict=True):
         for point in diagram.points:
-            motion = point.poincare_section[:, axis] * 1e6
+            motion = point.poincare_section[:, axis] * of_motion
             panel.plot(
                 np.full(motion.size, point.value * factor),
                 motion,
@@ -46,7 +47,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
             )
         _mark_incomplete(panel, diagram, factor)
         _mark_linear(panel, diagram, factor)
-        panel.set_ylabel(f"{'xyz'[axis]} at the Poincaré section [µm]")
+        panel.set_ylabel(f"{'xyz'[axis]} at the Poincaré section [{unit_of_motion}]")
         finish(panel)
     drawn = {point.verdict for point in diagram.points if point.is_complete}
     for verdict in (one for one in _COLOURS if one in drawn):

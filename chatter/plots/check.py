@@ -22,10 +22,10 @@ _BEYOND = 1.4
 
 def plot_check(result: StabilityCheck) -> Figure:
     """Bar of the axial depths at the operating speed, stable and not, with the cut on it."""
-    cut = result.case.cut
-    depth = cut.axial_depth * 1e3
-    crossings = np.asarray(result.limit.crossings[0]) * 1e3
-    deepest = result.max_depth * 1e3
+    cut, (unit, factor) = result.case.cut, result.units.length
+    depth = cut.axial_depth * factor
+    crossings = np.asarray(result.limit.crossings[0]) * factor
+    deepest = result.max_depth * factor
     shown = min(deepest, _BEYOND * max(depth, *crossings)) if crossings.size else deepest
     ends = [0.0, *crossings[crossings < shown], max(shown, depth)]
     figure = style.new_figure(6.5, 1.6)
@@ -38,11 +38,11 @@ def plot_check(result: StabilityCheck) -> Figure:
     colour = {STABLE: style.GREEN, CHATTER: style.RED}.get(result.verdict, style.ORANGE)
     axes.plot(
         depth, 0.35, "o", color=colour, markeredgecolor="black", markersize=9,
-        label=f"this cut, {depth:.4g} mm, {result.verdict}",
+        label=f"this cut, {depth:.4g} {unit}, {result.verdict}",
     )  # fmt: skip
     axes.set(
         xlim=(0.0, ends[-1]), ylim=(0.0, 1.0), yticks=[],
-        xlabel="axial depth [mm]", title=f"at {rpm(cut.spindle_speed):.6g} rpm",
+        xlabel=f"axial depth [{unit}]", title=f"at {rpm(cut.spindle_speed):.6g} rpm",
     )  # fmt: skip
     axes.legend(loc="lower right", fontsize=8)
     style.finish(axes)

@@ -32,44 +32,46 @@ def plot_learning(found: Learnt) -> Figure:
 
 def draw_probability(figure: Figure, axes: Axes, found: Learnt) -> None:
     """Draw the probability that a cut is stable, the median limit, tests and next cut."""
-    diagram = found.diagram
-    speed, depth = rpm(diagram.speeds), 1e3 * diagram.depths
+    diagram, (unit, factor) = found.diagram, found.units.length
+    speed, depth = rpm(diagram.speeds), factor * diagram.depths
     filled = axes.contourf(
         speed, depth, diagram.probability.T, levels=_LEVELS, cmap="RdYlGn", alpha=0.55
     )
     bar = figure.colorbar(filled, ax=axes, pad=0.01, ticks=_LEVELS[::2])
     bar.set_label("probability of a stable cut")
-    axes.plot(speed, _median(diagram), color="black", linewidth=1.8, label="median limit, now")
+    axes.plot(
+        speed, _median(diagram, factor), color="black", linewidth=1.8, label="median limit, now"
+    )
     if found.first is not diagram:
         axes.plot(
-            speed, _median(found.first), "--", color="black", linewidth=1.2,
+            speed, _median(found.first, factor), "--", color="black", linewidth=1.2,
             label="median limit, at the first test",
         )  # fmt: skip
     for run in found.measurement.runs:
         if run.record == "stable":
-            _draw_tests(axes, run)
+            _draw_tests(axes, run, factor)
     chosen = found.next_cut
     if chosen is not None:
         axes.plot(
-            rpm(chosen.spindle_speed), 1e3 * chosen.axial_depth, marker="*", markersize=17,
+            rpm(chosen.spindle_speed), factor * chosen.axial_depth, marker="*", markersize=17,
             color=style.BLUE, markeredgecolor="white", linestyle="none",
             label=f"next cut, for {found.aim}",
         )  # fmt: skip
     axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, depth[-1]))
-    axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
+    axes.set(xlabel="spindle speed [rpm]", ylabel=f"axial depth [{unit}]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.0, frameon=False)
     style.finish(axes)
 
 
-def _median(diagram: ParticleDiagram) -> Array:
-    """Median limit (s,), mm; NaN where half of the particles have none."""
+def _median(diagram: ParticleDiagram, factor: float) -> Array:
+    """Median limit (s,), m times a factor; NaN where half of the particles have none."""
     limits = np.sort(diagram.limits, axis=0)[len(diagram.limits) // 2]
-    return np.where(np.isfinite(limits), 1e3 * limits, np.nan)
+    return np.where(np.isfinite(limits), factor * limits, np.nan)
 
 
-def _draw_tests(axes: Axes, run: Run) -> None:
+def _draw_tests(axes: Axes, run: Run, factor: float) -> None:
     stable = run.signals["stable"] > 0.5
-    speed, depth = rpm(run.signals["spindle_speed"]), 1e3 * run.signals["axial_depth"]
+    speed, depth = rpm(run.signals["spindle_speed"]), factor * run.signals["axial_depth"]
     for chosen, label, marker, colour in (
         (stable, "test: stable", "o", style.GREEN),
         (~stable, "test: chatter", "X", style.RED),

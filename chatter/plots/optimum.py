@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from chatter.studies.optimisation.limits import Limits
     from chatter.studies.optimisation.optimum import Optimum
 
-_PER_MINUTE = 6e7
 _FILL_ROWS = 800
 _KEPT_FILL = "#BFE3D2"
 #: key of [optimum] -> name, colour and line of its boundary
@@ -48,8 +47,9 @@ def plot_optimum(found: Optimum) -> Figure:
 
 
 def _title(found: Optimum) -> str:
-    cut = found.grid_slice.case
-    at = f"{cut.width_of_cut * 1e3:.4g} mm wide, {cut.cut.feed_per_tooth * 1e3:.4g} mm a tooth"
+    cut, length = found.grid_slice.case, found.units.length
+    feed = length.text(cut.cut.feed_per_tooth)
+    at = f"{length.text(cut.width_of_cut)} wide, {feed} a tooth"
     name = found.case.title or "Process optimisation"
     return f"{name}\n{at}" if found.best else f"{name}\nno cut keeps all limits; shown: {at}"
 
@@ -57,16 +57,17 @@ def _title(found: Optimum) -> str:
 def draw_slice(axes: Axes, found: Optimum) -> None:
     """Draw stable depths, what the margins leave, boundaries of the limits, and the best cut."""
     grid_slice = found.grid_slice
-    speed, depth = rpm(grid_slice.speeds), grid_slice.depths * 1e3
+    units = found.units
+    speed, depth = rpm(grid_slice.speeds), grid_slice.depths * units.length.factor
     top = _top(found)
     _fill(axes, found, top)
-    rate = grid_slice.removal_rate * _PER_MINUTE
+    rate = grid_slice.removal_rate * units.removal_rate.factor
     lines = axes.contour(
         speed, depth, rate, levels=_levels(rate[depth <= top]), colors=[style.GREY],
         linewidths=0.6, alpha=0.8,
     )  # fmt: skip
     axes.clabel(lines, fmt="%g", fontsize=7.0)
-    handles: list[Artist] = [_handle(style.GREY, "-", "removal rate [cm³/min]")]
+    handles: list[Artist] = [_handle(style.GREY, "-", f"removal rate [{_rate_name(found)}]")]
     for key, usage in grid_slice.usage.items():
         name, colour, line = _BOUNDARIES[key]
         known = np.ma.masked_invalid(usage)
@@ -91,8 +92,13 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
         frameon=False, borderaxespad=0.2,
     )  # fmt: skip
     axes.set_xlim(speed[0], speed[-1])
-    axes.set(ylim=(0.0, top), xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
+    axes.set(ylim=(0.0, top), xlabel="spindle speed [rpm]")
+    axes.set_ylabel(f"axial depth [{units.length.name}]")
     style.finish(axes)
+
+
+def _rate_name(found: Optimum) -> str:
+    return found.units.removal_rate.name.replace("^3", "³")
 
 
 def _kept(limits: Limits) -> str:
@@ -112,25 +118,25 @@ def _elsewhere(known: np.ma.MaskedArray, shown: np.ma.MaskedArray) -> str:
 
 
 def _top(found: Optimum) -> float:
-    """Highest depth shown, mm: what is stable somewhere, not the whole search."""
+    """Highest depth shown, in its unit: what is stable somewhere, not the whole search."""
     rows = found.grid_slice.kept.any(axis=1)
     highest = found.grid_slice.depths[rows].max() if rows.any() else found.grid_slice.depths[-1]
-    return float(min(1.3 * highest, found.grid_slice.depths[-1])) * 1e3
+    return float(min(1.3 * highest, found.grid_slice.depths[-1])) * found.units.length.factor
 
 
 def _fill(axes: Axes, found: Optimum, top: float) -> None:
     """Fill stable and unstable depths; over them where all limits are kept."""
-    stable = found.grid_slice.stable
+    stable, factor = found.grid_slice.stable, found.units.length.factor
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
-    passed = np.array([np.searchsorted(c, depth * 1e-3) % 2 for c in stable.crossings]).T
+    passed = np.array([np.searchsorted(c, depth / factor) % 2 for c in stable.crossings]).T
     axes.pcolormesh(
         rpm(stable.speeds), depth, passed,
         cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]), vmin=0, vmax=1,
         shading="nearest", rasterized=True, zorder=0.4,
     )  # fmt: skip
-    kept = found.grid_slice.feasible_between(found.limits, depth * 1e-3) & (passed == 0)
+    kept = found.grid_slice.feasible_between(found.limits, depth / factor) & (passed == 0)
     _fill_stretches(axes, rpm(stable.speeds), depth, kept)
-    first = [found[0] * 1e3 if len(found) else np.nan for found in stable.crossings]
+    first = [depths[0] * factor if len(depths) else np.nan for depths in stable.crossings]
     axes.plot(rpm(stable.speeds), first, color=style.BLUE, linewidth=1.2, zorder=1.5)
 
 
@@ -167,6 +173,7 @@ def _handle(colour: str, line: str, label: str) -> Line2D:
 
 def _mark_candidates(axes: Axes, found: Optimum) -> list[Line2D]:
     handles = [_handle(style.BLUE, "-", "limit of stability")]
+    factor, rate = found.units.length.factor, found.units.removal_rate
     here = found.grid_slice.case.width_of_cut
     others = [
         one.point
@@ -176,24 +183,25 @@ def _mark_candidates(axes: Axes, found: Optimum) -> list[Line2D]:
     if others:
         handles += axes.plot(
             [rpm(point.spindle_speed) for point in others],
-            [point.axial_depth * 1e3 for point in others],
+            [point.axial_depth * factor for point in others],
             "o", color="white", markeredgecolor=style.BLUE, markersize=7, zorder=5,
             label="runner-up",
         )  # fmt: skip
     if found.best is not None:
         point = found.best.point
         handles += axes.plot(
-            rpm(point.spindle_speed), point.axial_depth * 1e3, "*", color=style.GREEN,
+            rpm(point.spindle_speed), point.axial_depth * factor, "*", color=style.GREEN,
             markeredgecolor="black", markersize=16, zorder=6, linestyle="none", clip_on=False,
-            label=f"optimum: {point.removal_rate * _PER_MINUTE:.4g} cm³/min",
+            label=f"optimum: {point.removal_rate * rate.factor:.4g} {_rate_name(found)}",
         )  # fmt: skip
     return handles
 
 
 def draw_radial_depths(axes: Axes, found: Optimum) -> None:
     """Draw the highest removal rate over the radial depth."""
-    radial_depths = [point.radial_depth * 1e3 for point in found.over_radial_depths]
-    rates = [point.removal_rate * _PER_MINUTE for point in found.over_radial_depths]
+    (unit, factor), per_minute = found.units.length, found.units.removal_rate.factor
+    radial_depths = [point.radial_depth * factor for point in found.over_radial_depths]
+    rates = [point.removal_rate * per_minute for point in found.over_radial_depths]
     axes.plot(
         radial_depths,
         rates,
@@ -204,14 +212,14 @@ def draw_radial_depths(axes: Axes, found: Optimum) -> None:
     if found.best is not None:
         point = found.best.point
         axes.plot(
-            point.radial_depth * 1e3, point.removal_rate * _PER_MINUTE, "*", color=style.GREEN,
+            point.radial_depth * factor, point.removal_rate * per_minute, "*", color=style.GREEN,
             markeredgecolor="black", markersize=16, linestyle="none", clip_on=False,
             label="optimum",
         )  # fmt: skip
-    axes.set_xlim(found.limits.radial_depths[0] * 1e3, found.limits.radial_depths[-1] * 1e3)
+    axes.set_xlim(*(end * factor for end in found.limits.radial_depths[[0, -1]]))
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.02)
-    axes.set(xlabel="radial depth [mm]", ylabel="removal rate\n[cm³/min]")
+    axes.set(xlabel=f"radial depth [{unit}]", ylabel=f"removal rate\n[{_rate_name(found)}]")
     style.finish(axes)
     if axes.has_data():
         axes.legend(fontsize=8.0, frameon=False, loc="best")

@@ -11,16 +11,13 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from chatter.description.material_words import coefficients_in_words
-from chatter.description.unit_system import METRIC, UnitSystem, units_of
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.operator_sheet.workbook import rows_of, units_of_all
 from chatter.plots import style
 from chatter.plots.stability_diagram import draw_limits
 from chatter.stability.pockets import SPEED_MARGIN
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from chatter.description.usual_units import UsualUnit
     from chatter.operator_sheet.cuts import CaseCuts
     from chatter.operator_sheet.sheet import Sheet
 
@@ -65,18 +62,9 @@ def _page(one: CaseCuts) -> Figure:
     units = units_of(one.case)
     _draw_table(table, [row[1:] for row in rows_of(one, units)], _headers(units))
     draw_limits(diagram, one.diagram)
-    if units is not METRIC:
-        _add_depths(diagram, units.length)
     diagram.set_xlabel("spindle speed [rpm]")
     _write(foot, 1.0, textwrap.fill(_remarks(one), 90))
     return figure
-
-
-def _add_depths(axes: Axes, unit: UsualUnit) -> None:
-    """Depths in another unit than mm, on the right."""
-    ratio = unit.factor / METRIC.length.factor
-    beside = axes.secondary_yaxis("right", functions=(lambda y: y * ratio, lambda y: y / ratio))
-    beside.set_ylabel(f"axial depth [{unit.name}]")
 
 
 def _table_of_all(cases: Sequence[CaseCuts]) -> Figure:

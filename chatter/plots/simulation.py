@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.description.arrays import Array
+from chatter.description.unit_system import UnitSystem
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.plots import style
 from chatter.plots.workpiece import draw_workpiece
 from chatter.simulation.tool_course import ToolCourse
@@ -30,8 +32,8 @@ _SHOWN_TURNS = 3.0
 #: feed shown of a profile, in revolutions
 _PROFILE_TURNS = 12.0
 _TITLE_WIDTH = 140
-#: range of a surface that is drawn at least, um
-_LEAST_SHOWN = 1e-3
+#: range of a surface that is drawn at least, m
+_LEAST_SHOWN = 1e-9
 #: parts of a programmed path that are coloured
 _PARTS_OF_PATH = 1500
 #: a component smaller than this share of the largest is left out
@@ -48,9 +50,11 @@ def plot_simulation(result: SimulationResult) -> Figure:
     figure = style.new_figure(11.0, 12.0)
     figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
     grid = figure.add_gridspec(4, 1, height_ratios=[1.0, 1.0, 1.15, 1.15])
+    force, micrometres = result.units.force, result.units.instead_of("µm")
+    motion = result.displacement * result.units.displacement.factor
     signals = (
-        ("force [N]", ("Fx", "Fy", "Fz"), result.force),
-        ("displacement [µm]", ("x", "y", "z"), result.displacement * 1e6),
+        (f"force [{force.name}]", ("Fx", "Fy", "Fz"), result.force * force.factor),
+        (f"displacement [{micrometres.name}]", ("x", "y", "z"), motion),
     )
     for row, (label, names, values) in enumerate(signals):
         pair = grid[row].subgridspec(1, 2)
@@ -64,8 +68,8 @@ def plot_simulation(result: SimulationResult) -> Figure:
         layers = len(result.setup.slices.height)
         for index, layer in enumerate(sorted({0, layers - 1})):
             panel = figure.add_subplot(bottom[index])
-            height = result.setup.slices.height[layer] * 1e3
-            panel.set_title(f"workpiece {height:.2g} mm above the tip", **style.TITLE)
+            height = result.units.length.text(result.setup.slices.height[layer], ".2g")
+            panel.set_title(f"workpiece {height} above the tip", **style.TITLE)
             draw_workpiece(panel, result, layer)
         return figure
     if isinstance(result.setup.path, ToolCourse):
@@ -82,30 +86,32 @@ def plot_simulation(result: SimulationResult) -> Figure:
 
 def draw_course(axes: Axes, result: SimulationResult) -> None:
     """Draw the path of the tool along a program, coloured by the force on it."""
-    x, y = 1e3 * result.setup.path.position_at(result.time)
-    size = np.linalg.norm(result.force, axis=1)
+    (unit, factor), force = result.units.length, result.units.force
+    x, y = factor * result.setup.path.position_at(result.time)
+    size = np.linalg.norm(result.force, axis=1) * force.factor
     a_part = max(1, len(size) // _PARTS_OF_PATH)
     count = len(size) // a_part
     largest = size[: count * a_part].reshape(count, a_part).max(axis=1)
     at = slice(0, count * a_part, a_part)
     axes.plot(x, y, color=style.GREY, linewidth=0.8)
     drawn = axes.scatter(x[at], y[at], c=largest, s=9.0, cmap="viridis", zorder=3)
-    axes.figure.colorbar(drawn, ax=axes, label="largest force [N]")
+    axes.figure.colorbar(drawn, ax=axes, label=f"largest force [{force.name}]")
     axes.set_aspect("equal", "datalim")
     axes.set_title("path of the tool", **style.TITLE)
-    axes.set_xlabel("x [mm]")
-    axes.set_ylabel("y [mm]")
+    axes.set_xlabel(f"x [{unit}]")
+    axes.set_ylabel(f"y [{unit}]")
     style.finish(axes)
 
 
 def draw_feed(axes: Axes, result: SimulationResult) -> None:
     """Draw feed and spindle speed along a program over time."""
     x, y = result.setup.path.position_at(result.time)
-    feed = 60e3 * np.hypot(np.gradient(x, result.time), np.gradient(y, result.time))
+    unit, factor = result.units.feed_rate
+    feed = factor * np.hypot(np.gradient(x, result.time), np.gradient(y, result.time))
     axes.plot(result.time, feed, color=style.BLUE, linewidth=1.2)
     axes.set_title("feed, and spindle speed", **style.TITLE)
     axes.set_xlabel("time [s]")
-    axes.set_ylabel("feed [mm/min]", color=style.BLUE)
+    axes.set_ylabel(f"feed [{unit}]", color=style.BLUE)
     style.finish(axes)
     other = axes.twinx()
     other.plot(result.time, rpm(result.spindle_speed), color=style.ORANGE, linewidth=1.2)
@@ -120,11 +126,11 @@ def _shows_workpiece(result: SimulationResult) -> bool:
 
 
 def _title(result: SimulationResult) -> str:
-    cut = result.case.cut
+    cut, length = result.case.cut, result.units.length
     case = (
         f"{result.case.title + ': ' if result.case.title else ''}"
-        f"{rpm(cut.spindle_speed):.0f} rpm, axial depth {cut.axial_depth * 1e3:.4g} mm, "
-        f"feed {cut.feed_per_tooth * 1e3:.4g} mm a tooth"
+        f"{rpm(cut.spindle_speed):.0f} rpm, axial depth {length.text(cut.axial_depth)}, "
+        f"feed {length.text(cut.feed_per_tooth)} a tooth"
     )
     found = result.detection
     if found is None:
@@ -213,13 +219,17 @@ def spectrum(time: Array, signal: Array) -> tuple[Array, Array]:
 def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     """Draw the amplitude spectrum of the displacement, or of the force on a rigid tool."""
     rigid = not result.setup.modes
-    values = result.force if rigid else result.displacement * 1e6
-    names = ("Fx", "Fy", "Fz") if rigid else ("x", "y", "z")
+    units = result.units
+    values, unit = result.displacement * units.displacement.factor, units.instead_of("µm").name
+    names = ("x", "y", "z")
+    if rigid:
+        values, unit = result.force * units.force.factor, units.force.name
+        names = ("Fx", "Fy", "Fz")
     axes.set_title(
         f"spectrum of the {'force' if rigid else 'displacement'}, last half of the run",
         **style.TITLE,
     )
-    axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]" if rigid else "amplitude [µm]")
+    axes.set(xlabel="frequency [Hz]", ylabel=f"amplitude [{unit}]")
     rows = result.settled
     tooth = result.case.tool.teeth * result.case.cut.spindle_speed / _TURN
     modes = [mode.frequency for mode in result.setup.modes]
@@ -292,15 +302,16 @@ def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     """Draw the displacement each time the first tooth is at +y."""
     axes.set_title("once a revolution", **style.TITLE)
     plane = moving_plane(result)
-    axes.set(xlabel=f"{'xyz'[plane[0]]} [µm]", ylabel=f"{'xyz'[plane[1]]} [µm]")
+    unit, factor = result.units.instead_of("µm")
+    axes.set(xlabel=f"{'xyz'[plane[0]]} [{unit}]", ylabel=f"{'xyz'[plane[1]]} [{unit}]")
     style.finish(axes)
-    points = once_a_revolution(result, plane)
+    points = once_a_revolution(result, plane) * factor
     if not result.setup.modes or len(points) == 0:
         text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
         _say(axes, text)
         return
     half = len(points) // 2
-    orbit = result.displacement[result.settled][:, plane] * 1e6
+    orbit = result.displacement[result.settled][:, plane] * result.units.displacement.factor
     axes.plot(*orbit.T, color="#C9D6DF", linewidth=0.5, zorder=1)
     axes.plot(*points[:half].T, ".", color=style.GREY, markersize=3, label="first half", zorder=2)
     axes.plot(*points[half:].T, "o", color=style.RED, markersize=3, label="last half", zorder=3)
@@ -331,20 +342,22 @@ def once_a_revolution(result: SimulationResult, plane: tuple[int, int] = (0, 1))
 def draw_wall(axes: Axes, result: SimulationResult) -> None:
     """Draw the deviation of the wall over feed and height."""
     axes.set_title("wall, deviation (positive: too much removed)", **style.TITLE)
-    axes.set(xlabel="feed [mm]", ylabel="height [mm]")
+    length, small = result.units.length, result.units.displacement
+    axes.set(xlabel=f"feed [{length.name}]", ylabel=f"height [{length.name}]")
     walls = result.finish.walls
     if not walls:
         _say_why_not(axes, result)
         return
     wall = walls[0].profiles
-    x, deviation = wall.x * 1e3, wall.deviation * 1e6
+    x, deviation = wall.x * length.factor, wall.deviation * small.factor
     low, high = np.percentile(deviation, [0.5, 99.5])
-    if high - low < 1e-3 * _LEAST_SHOWN:
-        low, high = low - 0.5 * _LEAST_SHOWN, high + 0.5 * _LEAST_SHOWN
-    edges = (_edges(x), np.maximum(_edges(wall.height * 1e3), 0.0))
+    least = _LEAST_SHOWN * small.factor
+    if high - low < 1e-3 * least:
+        low, high = low - 0.5 * least, high + 0.5 * least
+    edges = (_edges(x), np.maximum(_edges(wall.height * length.factor), 0.0))
     image = axes.pcolormesh(*edges, deviation, cmap="cividis", vmin=low, vmax=high, rasterized=True)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
-    bar.set_label(f"wall at {wall.side} [µm]", fontsize=9)
+    bar.set_label(f"wall at {wall.side} [{result.units.instead_of('µm').name}]", fontsize=9)
     bar.ax.tick_params(labelsize=8)
     style.finish(axes)
     axes.grid(visible=False)
@@ -361,45 +374,55 @@ def _edges(middle: Array) -> Array:
 def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     """Draw the profile of every wall at half its height, and of the floor."""
     axes.set_title("profiles along the feed, about their mean", **style.TITLE)
-    axes.set(xlabel="feed from the start of what is evaluated [mm]", ylabel="material left [µm]")
-    finish = result.finish
+    finish, units = result.finish, result.units
+    axes.set_xlabel(f"feed from the start of what is evaluated [{units.length.name}]")
+    axes.set_ylabel(f"material left [{units.instead_of('µm').name}]")
     if not finish.walls and finish.floor is None:
         _say_why_not(axes, result)
         return
     shown = _PROFILE_TURNS * result.case.tool.teeth * result.case.cut.feed_per_tooth
     for wall, colour in zip(finish.walls, (style.BLUE, style.ORANGE), strict=False):
         middle = wall.profiles.deviation[len(wall.profiles.height) // 2]
-        _draw_profile(axes, wall.profiles.x, -middle, shown, colour, _wall_label(wall))
+        look = {"color": colour, "label": _wall_label(wall, units)}
+        _draw_profile(axes, wall.profiles.x, -middle, shown, units, **look)
     if finish.floor is not None:
         floor = finish.floor
-        rough = f"Ra {round(floor.texture.roughness.mean * 1e6, 6):.3g} µm"
+        unit, factor = _roughness_unit(units)
+        rough = f"Ra {round(floor.texture.roughness.mean * factor, 6):.3g} {unit}"
         label = f"floor: {'without feed marks' if floor.profile.sharp else rough}"
-        _draw_profile(axes, floor.profile.x, floor.profile.height, shown, style.GREEN, label)
+        look = {"color": style.GREEN, "label": label}
+        _draw_profile(axes, floor.profile.x, floor.profile.height, shown, units, **look)
     style.finish(axes)
     axes.margins(x=0.0)
     low, high = axes.get_ylim()
-    if high - low < _LEAST_SHOWN:
-        low, high = -0.5 * _LEAST_SHOWN, 0.5 * _LEAST_SHOWN
+    least = _LEAST_SHOWN * units.displacement.factor
+    if high - low < least:
+        low, high = -0.5 * least, 0.5 * least
     axes.set_ylim(low, high + 0.22 * (high - low) * (len(axes.lines) + 0.5) / 2.0)
     axes.legend(loc="upper left", fontsize=8.0, framealpha=0.85)
 
 
 def _draw_profile(
-    axes: Axes, x: Array, profile: Array, longest: float, colour: str, label: str
+    axes: Axes, x: Array, profile: Array, longest: float, units: UnitSystem, **look: Any
 ) -> None:
     """Draw a profile from the start of the stretch that was evaluated."""
     shown = x - x[0] <= longest
     x, profile = x[shown], profile[shown]
-    axes.plot(
-        (x - x[0]) * 1e3, (profile - profile.mean()) * 1e6, color=colour, linewidth=1.0, label=label
-    )
+    height = (profile - profile.mean()) * units.displacement.factor
+    axes.plot((x - x[0]) * units.length.factor, height, linewidth=1.0, **look)
 
 
-def _wall_label(wall: WallFinish) -> str:
-    rough = wall.texture.roughness
+def _roughness_unit(units: UnitSystem) -> UsualUnit:
+    """Unit of Ra and Rz, with the sign of a millionth."""
+    return UsualUnit(units.roughness.name.replace("u", "µ", 1), units.roughness.factor)
+
+
+def _wall_label(wall: WallFinish, units: UnitSystem) -> str:
+    rough, of_rough, small = wall.texture.roughness, _roughness_unit(units), units.displacement
     return (
-        f"wall {wall.profiles.side}: Ra {rough.mean * 1e6:.3g} µm, Rz {rough.depth * 1e6:.3g} µm, "
-        f"location error {wall.location_error * 1e6:+.3g} µm"
+        f"wall {wall.profiles.side}: Ra {of_rough.text(rough.mean, '.3g')}, "
+        f"Rz {of_rough.text(rough.depth, '.3g')}, "
+        f"location error {wall.location_error * small.factor:+.3g} {units.instead_of('µm').name}"
     )
 
 

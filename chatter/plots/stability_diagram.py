@@ -16,6 +16,7 @@ from matplotlib.patches import Patch
 from chatter.description.arrays import Array, IntegerArray
 from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.plots import style
 from chatter.plots.depth_axis import ABOVE_CUT, end_of_depth_axis
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
@@ -65,6 +66,8 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
 def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     """Draw critical depths, what is stable below them, and the operating point."""
     x, top, limits = diagram.axis.values, _top(diagram), diagram.limits
+    length = diagram.units.length
+    unit, factor = length
     _fill(axes, diagram, top)
     # where stable intervals come or go the limit jumps: no line across
     jumps = np.flatnonzero(np.diff([len(found) for found in limits.crossings])) + 1
@@ -72,7 +75,7 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     marker = "." if x.size <= _FEW_VALUES else ""
 
     def draw(depth: Array, colour: str, width: float, label: str | None) -> None:
-        broken = np.insert(np.where(np.isfinite(depth), depth * 1e3, math.nan), jumps, math.nan)
+        broken = np.insert(np.where(np.isfinite(depth), depth * factor, math.nan), jumps, math.nan)
         axes.plot(
             across, broken, "-", marker=marker, markersize=3.5, color=colour, linewidth=width,
             label=label,
@@ -82,20 +85,20 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
         further = [d[index] if len(d) > index else math.nan for d in limits.crossings]
         draw(np.array(further), style.BLUE, 0.8, None)
     draw(limits.critical_depth, style.BLUE, 1.6, f"limit, {METHODS[diagram.method].label}")
-    _draw_across_jumps(axes, x, limits.crossings, jumps)
+    _draw_across_jumps(axes, x, [factor * found for found in limits.crossings], jumps)
     if diagram.is_over_speed and diagram.method != "zero-order":
         zero_order = diagram.zero_order.critical_depth
         axes.plot(
-            x, np.where(np.isfinite(zero_order), zero_order, math.nan) * 1e3, color=style.GREY,
+            x, np.where(np.isfinite(zero_order), zero_order, math.nan) * factor, color=style.GREY,
             linewidth=1.0, linestyle=(0, (4, 2)), label=f"limit, {METHODS['zero-order'].label}",
         )  # fmt: skip
     _hatch_what_is_not_certain(axes, diagram, top)
     none = np.isinf(limits.critical_depth)
     if none.any():
-        searched = float(np.nanmax(diagram.max_depth)) * 1e3
+        searched = length.text(float(np.nanmax(diagram.max_depth)), ".3g")
         axes.plot(
-            x, np.where(none, 0.985 * top * 1e3, math.nan), marker="^", markersize=4.0,
-            linestyle="none", color=style.BLUE, label=f"no limit up to {searched:.3g} mm",
+            x, np.where(none, 0.985 * top * factor, math.nan), marker="^", markersize=4.0,
+            linestyle="none", color=style.BLUE, label=f"no limit up to {searched}",
         )  # fmt: skip
     flip = np.array(limits.bifurcation) == "flip"
     if flip.any():
@@ -109,26 +112,29 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
             word, look = "not certain", {"marker": "o", "color": style.ORANGE}
         cut = diagram.case.cut
         if cut.axial_depth > top:
-            _point_above(axes, cut, top * 1e3, look["color"])
+            _point_above(axes, cut, top * factor, look["color"], length)
             cut = cut.model_copy(update={"axial_depth": _EDGE * top})
-        style.mark_cut(axes, cut, f"operating point, {word}", **look)
+        style.mark_cut(axes, cut, f"operating point, {word}", length, **look)
     else:
-        _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * 1e3, x)
+        _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * factor, x)
     _name_sides(axes)
-    axes.set(xlim=(x[0], x[-1]), ylim=(0.0, top * 1e3), ylabel="axial depth [mm]")
+    axes.set(xlim=(x[0], x[-1]), ylim=(0.0, top * factor), ylabel=f"axial depth [{unit}]")
     style.finish(axes)
 
 
 def _draw_across_jumps(axes: Axes, x: Array, crossings: Sequence[Array], jumps: Array) -> None:
-    """Draw limits that go on where stable intervals come or go beside them, and lone values."""
+    """Draw limits that go on where stable intervals come or go beside them, and lone values.
+
+    The limits are in the unit of the picture.
+    """
     for right in jumps:
         before, after = crossings[right - 1], crossings[right]
         for low, high in zip(*_kept(before, after), strict=True):
-            axes.plot(x[right - 1 : right + 1], [1e3 * low, 1e3 * high], color=style.BLUE, lw=0.8)
+            axes.plot(x[right - 1 : right + 1], [low, high], color=style.BLUE, lw=0.8)
         if right + 1 in jumps:
             # a value of its own, between jumps: no line shows its limits
             axes.plot(
-                np.full(len(after), x[right]), np.asarray(after) * 1e3, ".", markersize=3.5,
+                np.full(len(after), x[right]), np.asarray(after), ".", markersize=3.5,
                 color=style.BLUE,
             )  # fmt: skip
 
@@ -154,15 +160,15 @@ def _top(diagram: StabilityDiagram) -> float:
     return shown if diagram.is_over_speed else max(shown, ABOVE_CUT * cut)
 
 
-def _point_above(axes: Axes, cut: Cut, top: float, colour: str) -> None:
+def _point_above(axes: Axes, cut: Cut, top: float, colour: str, length: UsualUnit) -> None:
     """Draw an arrow from the mark of a cut at the upper edge to its depth above the picture."""
-    x = rpm(cut.spindle_speed)
+    x, depth = rpm(cut.spindle_speed), to_digits(cut.axial_depth * length.factor, 3)
     axes.annotate(
         "", (x, top), (x, _FOOT * top), zorder=5,
         arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.6},
     )  # fmt: skip
     axes.annotate(
-        f"at {to_digits(cut.axial_depth * 1e3, 3)} mm", (x, _EDGE * top), (9.0, 0.0),
+        f"at {depth} {length.name}", (x, _EDGE * top), (9.0, 0.0),
         textcoords="offset points", va="center", fontsize=8.5, zorder=5,
         bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0.0, "pad": 1.0},
     )  # fmt: skip
@@ -181,7 +187,8 @@ def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
     beyond = ~(depth[:, None] <= _searched(diagram, left, share)[None, :])
     if diagram.is_over_speed:
         beyond[:] = False
-    _paint(axes, x, np.where(beyond, _NOT_SEARCHED, chatter), top * 1e3)
+    shown = top * diagram.units.length.factor
+    _paint(axes, x, np.where(beyond, _NOT_SEARCHED, chatter), shown)
     if beyond.any():
         axes.fill_between(
             [], [], facecolor=style.NOT_SEARCHED_FILL, edgecolor=style.GREY, label="not searched"
@@ -262,9 +269,10 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
             _between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)
         ]
         bands = _not_certain(between, low, high)
+    factor = diagram.units.length.factor
     for number, (first, last) in enumerate(bands):
         axes.fill_between(
-            x, 1e3 * first, 1e3 * np.minimum(last, top),
+            x, factor * first, factor * np.minimum(last, top),
             where=~refused[nearer] & (first < top), facecolor="none",
             edgecolor=style.ORANGE, hatch="///", linewidth=0.0, alpha=0.55, zorder=0.8,
             label="not certain: edge forces" if number == 0 else None,
@@ -299,7 +307,7 @@ def _mark_case(axes: Axes, x: float, y: float, inside: Array) -> None:
 
 def _mark_pockets(axes: Axes, diagram: StabilityDiagram) -> None:
     for number, pocket in enumerate(diagram.pockets, start=1):
-        x, y = rpm(pocket.spindle_speed), pocket.axial_depth * 1e3
+        x, y = rpm(pocket.spindle_speed), pocket.axial_depth * diagram.units.length.factor
         label = "pocket, with margin" if number == 1 else None
         axes.plot(x, y, "o", color=style.GREEN, markersize=11, linestyle="none", label=label)
         axes.annotate(
@@ -309,9 +317,11 @@ def _mark_pockets(axes: Axes, diagram: StabilityDiagram) -> None:
 
 def _pocket_list(diagram: StabilityDiagram) -> str:
     """List below the picture what the numbers in it stand for."""
+    length, rate = diagram.units.length, diagram.units.removal_rate
     lines = [
-        f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
-        f"{to_digits(pocket.removal_rate * 6e7, 3)} cm³/min"
+        f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, "
+        f"{length.text(pocket.axial_depth, '.3g')}, "
+        f"{to_digits(pocket.removal_rate * rate.factor, 3)} {rate.name.replace('^3', '³')}"
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
     rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]

@@ -16,6 +16,7 @@ from PIL import Image
 
 from chatter.description.sections.cut import Cut
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 
 #: Okabe and Ito's palette
 BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
@@ -64,10 +65,10 @@ def png_of(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def mark_cut(axes: Any, cut: Cut, label: str, **look: Any) -> None:
-    """Mark the speed and depth of a cut among spindle speeds (rpm) and axial depths (mm)."""
+def mark_cut(axes: Any, cut: Cut, label: str, length: UsualUnit, **look: Any) -> None:
+    """Mark the speed and depth of a cut among spindle speeds (rpm) and axial depths."""
     point = {"marker": "o", "markersize": 9, "markeredgecolor": "black", "linestyle": "none"}
-    x, y = rpm(cut.spindle_speed), cut.axial_depth * 1e3
+    x, y = rpm(cut.spindle_speed), cut.axial_depth * length.factor
     axes.plot(x, y, **{**point, **look}, label=label, zorder=5)
 
 

@@ -37,13 +37,14 @@ def plot_uncertainty(found: Uncertainty) -> Figure:
 def draw_band(axes: Axes, found: Uncertainty) -> None:
     """Draw quantiles of the limit over speed, and the cut with its probability."""
     speed, cut = rpm(found.speeds), found.case.cut
-    top = max(found.max_depth, 1.05 * cut.axial_depth) * 1e3
-    low, middle, high = found.quantiles() * 1e3
+    length = found.units.length
+    top = max(found.max_depth, 1.05 * cut.axial_depth) * length.factor
+    low, middle, high = found.quantiles() * length.factor
     axes.fill_between(
         speed, np.minimum(low, top), np.minimum(high, top), color=style.BLUE, alpha=0.22,
         linewidth=0.0, label="5 to 95 % of the limits",
     )  # fmt: skip
-    for row in found.limits[:_DRAWN_SAMPLES] * 1e3:
+    for row in found.limits[:_DRAWN_SAMPLES] * length.factor:
         axes.plot(speed, _to_the_top(row, top), color=style.BLUE, linewidth=0.35, alpha=0.35)
     axes.plot(
         speed, _to_the_top(middle, top), color=style.BLUE, linewidth=1.8, label="median limit"
@@ -53,9 +54,10 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
     if found.for_certain_in_words():
         label += f", for certain {found.least_probability:.1%}"
     colour = style.GREEN if found.least_probability >= 0.5 else style.ORANGE
-    style.mark_cut(axes, cut, label, color=style.RED if found.probability < 0.5 else colour)
+    colour = style.RED if found.probability < 0.5 else colour
+    style.mark_cut(axes, cut, label, length, color=colour)
     axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, _highest_depth(found, high, top)))
-    axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
+    axes.set(xlabel="spindle speed [rpm]", ylabel=f"axial depth [{length.name}]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.5, frameon=False)
     style.finish(axes)
 
@@ -63,7 +65,8 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
 def _highest_depth(found: Uncertainty, high: np.ndarray, top: float) -> float:
     if not np.isfinite(high).all():
         return top
-    return min(top, 1.1 * max(float(high.max()), found.case.cut.axial_depth * 1e3))
+    depth = found.case.cut.axial_depth * found.units.length.factor
+    return min(top, 1.1 * max(float(high.max()), depth))
 
 
 def _to_the_top(values: np.ndarray, top: float) -> np.ndarray:
@@ -75,14 +78,16 @@ def _to_the_top(values: np.ndarray, top: float) -> np.ndarray:
 
 def draw_distribution(axes: Axes, found: Uncertainty) -> None:
     """Draw the distribution of the limit at the speed of the cut."""
-    limit = found.operating[np.isfinite(found.operating)] * 1e3
+    length = found.units.length
+    limit = found.operating[np.isfinite(found.operating)] * length.factor
     if limit.size:
         spread = np.ptp(limit) > 0.0
         axes.hist(limit, bins=_BINS if spread else 1, color=style.BLUE, alpha=0.6)
-        for value, line in zip(found.operating_quantiles() * 1e3, (":", "-", ":"), strict=True):
+        quantiles = found.operating_quantiles() * length.factor
+        for value, line in zip(quantiles, (":", "-", ":"), strict=True):
             if np.isfinite(value):
                 axes.axvline(value, color=style.BLUE, linestyle=line, linewidth=1.4)
-    depth = found.case.cut.axial_depth * 1e3
+    depth = found.case.cut.axial_depth * length.factor
     axes.axvline(depth, color="black", linewidth=1.4, linestyle=(0, (4, 2)))
     low, high = axes.get_xlim()
     axes.set_xlim(low - _BESIDE * (high - low), high + _BESIDE * (high - low))
@@ -91,8 +96,10 @@ def draw_distribution(axes: Axes, found: Uncertainty) -> None:
         xytext=(-2, 0), textcoords="offset points", ha="right", va="top", fontsize=7.5,
     )  # fmt: skip
     missing = len(found.operating) - limit.size
-    beyond = f" ({missing} samples above {found.max_depth * 1e3:.3g} mm)" if missing else ""
-    axes.set_xlabel(f"limit at {rpm(found.case.cut.spindle_speed):.0f} rpm [mm]{beyond}")
+    deepest = length.text(found.max_depth, ".3g")
+    beyond = f" ({missing} samples above {deepest})" if missing else ""
+    speed = f"{rpm(found.case.cut.spindle_speed):.0f} rpm"
+    axes.set_xlabel(f"limit at {speed} [{length.name}]{beyond}")
     axes.set_ylabel("samples")
     style.finish(axes)
 

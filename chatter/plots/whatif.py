@@ -44,9 +44,17 @@ def _title(study: WhatIf) -> str:
 
 def _quantity_label(study: WhatIf) -> str:
     quantity = study.measure.quantities[study.quantity]
-    found = [unit_of(quantity, one, study.quantity) for one in study.outcomes]
+    found = [unit_of(study, quantity, one, study.quantity).name for one in study.outcomes]
     unit = next((f" [{one}]" for one in found if one), "")
     return title_of(study, quantity) + unit.replace("[um]", "[µm]")
+
+
+def _values_read(study: WhatIf) -> np.ndarray:
+    """Number shown at every point, in the unit that it is read in; nan where there is none."""
+    quantity = study.measure.quantities[study.quantity]
+    factors = [unit_of(study, quantity, one, study.quantity).factor for one in study.outcomes]
+    values = [np.nan if value is None else value for value in study.values()]
+    return np.array(values, dtype=np.float64) * factors
 
 
 def _colours(count: int) -> list:
@@ -78,6 +86,7 @@ def _overlay(study: WhatIf) -> Figure:
 
 def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list) -> None:
     across, without = "", 0
+    label_of_y, of_y = _read_label(panel, study)
     for row, (outcome, point) in enumerate(zip(study.outcomes, study.points, strict=True)):
         label = point.labels[0][:_LONGEST_LABEL]
         if outcome.failure:
@@ -85,8 +94,9 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
         for curve in outcome.curves:
             if (curve.panel, curve.name) != (panel, name):
                 continue
-            across = curve.across
-            x, y = (np.array(part, dtype=np.float64) for part in (curve.x, curve.y))
+            across, of_x = _read_label(curve.across, study)
+            x = np.array(curve.x, dtype=np.float64) * of_x
+            y = np.array(curve.y, dtype=np.float64) * of_y
             none = np.isnan(y)
             look = {"marker": "^", "label": f"{label}: none found"} if none.all() else {}
             axes.plot(x, y, color=colours[row], linewidth=1.3, **{"label": label, **look})
@@ -100,10 +110,18 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
         room = 1.0 - _TOP + _ROW * without if without else 0.0
         axes.set_ylim(low, low + (high - low) / (1.0 - room))
     if study.measure.name == "lobes" and isinstance(study.model, Case):
-        style.mark_cut(axes, study.model.cut, "operating point", color="black", markersize=6)
+        look = {"color": "black", "markersize": 6}
+        style.mark_cut(axes, study.model.cut, "operating point", study.units.length, **look)
     axes.margins(x=0.0)
-    axes.set(xlabel=across, ylabel=panel if not name else f"{name}\n{panel}")
+    axes.set(xlabel=across, ylabel=f"{name}\n{label_of_y}" if name else label_of_y)
     style.finish(axes)
+
+
+def _read_label(label: str, study: WhatIf) -> tuple[str, float]:
+    """Label that ends with a metric unit in the unit that is read, and its number in one of it."""
+    name, bracket, unit = label.partition(" [")
+    read = study.units.instead_of(unit.removesuffix("]"))
+    return (f"{name} [{read.name}]" if bracket else label), read.factor
 
 
 def _draw_none_found(axes: Axes, x: np.ndarray, colour: object, row: int) -> None:
@@ -122,7 +140,7 @@ def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
     one = study.variations[0]
     numbers = one.numbers
     x = np.arange(len(one.values)) if numbers is None else np.array(numbers)
-    y = np.array([np.nan if value is None else value for value in study.values()])
+    y = _values_read(study)
     axes.plot(x, y, color=style.GREY, linewidth=1.0, zorder=1)
     for index, colour in enumerate(colours):
         axes.plot(x[index], y[index], "o", color=colour, markeredgecolor="black", markersize=7)
@@ -155,7 +173,7 @@ def none_found(study: WhatIf) -> str:
     if len(searched) != 1:
         return "none found"
     (farthest,) = searched
-    return f"no limit up to {farthest:.3g} mm"
+    return f"no limit up to {study.units.instead_of('mm').text(farthest, '.3g')}"
 
 
 def _mark_verdicts(axes: Axes, study: WhatIf, x: np.ndarray, y: np.ndarray) -> None:
@@ -183,8 +201,7 @@ def _wrapped(label: str, width: int = 26) -> str:
 def _heat_map(study: WhatIf) -> Figure:
     down, across = study.variations
     shape = len(down.values), len(across.values)
-    values = np.array([np.nan if value is None else value for value in study.values()])
-    values = values.reshape(shape)
+    values = _values_read(study).reshape(shape)
     figure = style.new_figure(min(12.0, 4.0 + 0.62 * shape[1] + 1.2), 2.6 + 0.5 * shape[0])
     axes = figure.subplots()
     axes.set_facecolor("#FFFFFF")
@@ -227,7 +244,7 @@ def _write_values(axes: Axes, study: WhatIf, values: np.ndarray) -> None:
 
 def _tornado(study: WhatIf) -> Figure:
     quantity = study.measure.quantities[study.quantity]
-    base = study.values()[0]
+    base = study.values()[0] if study.values()[0] is None else _values_read(study)[0]
     order = list(ranked(study))
     figure = style.new_figure(9.0, 2.0 + 0.55 * len(order))
     axes = figure.subplots()
@@ -236,7 +253,7 @@ def _tornado(study: WhatIf) -> Figure:
             _draw_swing(axes, study, index, row)
     if base is not None:
         axes.axvline(base, color="black", linewidth=1.0)
-        text = value_text(quantity, study.outcomes[0], study.quantity)
+        text = value_text(study, quantity, study.outcomes[0], study.quantity)
         axes.set_title(f"{_title(study)}; as given: {text}", fontsize=10.0, loc="left")
     axes.set_yticks(range(len(order)), [study.variations[k].path for k in reversed(order)])
     axes.set_xlabel(_quantity_label(study))
@@ -253,7 +270,7 @@ _ENDS = ((style.BLUE, "low value"), (style.ORANGE, "high value"))
 
 def _draw_swing(axes: Axes, study: WhatIf, index: int, row: int) -> None:
     """Bars of one path; in two lanes where both ends lie on the same side."""
-    values = study.values()
+    values = [None if np.isnan(value) else value for value in _values_read(study)]
     base, low, high = values[0], values[1 + 2 * index], values[2 + 2 * index]
     known = low is not None and high is not None
     same_side = known and (low - base) * (high - base) > 0.0

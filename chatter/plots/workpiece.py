@@ -28,24 +28,25 @@ def draw_workpiece(axes: Axes, result: SimulationResult, layer: int) -> None:
     """Draw a layer of a carved dexel or voxel workpiece, and the path of the tool."""
     stock = result.setup.groups[0].stock
     low, high, material = plan_view(stock, layer)
+    unit, factor = result.units.length
     axes.imshow(
         material,
         cmap=_MATERIAL,
         origin="lower",
-        extent=(low[0] * 1e3, high[0] * 1e3, low[1] * 1e3, high[1] * 1e3),
+        extent=(low[0] * factor, high[0] * factor, low[1] * factor, high[1] * factor),
         interpolation="nearest",
         vmin=0,
         vmax=1,
     )
-    x, y = result.setup.path.position_at(result.time) * 1e3
+    x, y = result.setup.path.position_at(result.time) * factor
     axes.plot(x, y, color=BLUE, linewidth=1.0, label="tool axis")
     turn = np.linspace(0.0, 2.0 * np.pi, 100)
-    radius = result.setup.slices.radius[layer] * 1e3
+    radius = result.setup.slices.radius[layer] * factor
     axes.plot(
         x[-1] + radius * np.sin(turn), y[-1] + radius * np.cos(turn), color=GREY, linewidth=0.8
     )
     axes.legend(frameon=False, fontsize=8, loc="upper left")
-    axes.set(xlabel="x [mm]", ylabel="y [mm]")
+    axes.set(xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     finish(axes)
     axes.grid(visible=False)
 

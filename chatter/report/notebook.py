@@ -9,6 +9,7 @@ from html import escape
 from importlib.util import find_spec
 from typing import Any
 
+from chatter.description.unit_system import METRIC
 from chatter.plots.interactive_picture import interactive_picture
 from chatter.plots.notebook_scripts import load_notebook_scripts
 from chatter.plots.style import png_of
@@ -45,7 +46,7 @@ def _rows(result: Any) -> list[Any]:
         return result.rows()
     if hasattr(result, "sentences") or not hasattr(result, "summary"):
         return []
-    return summary_rows(result.summary())
+    return summary_rows(result.summary(), getattr(result, "units", METRIC))
 
 
 def _words(result: Any) -> list[str]:

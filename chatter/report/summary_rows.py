@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from chatter.description.unit_system import METRIC, UnitSystem
+
 #: ends of keys, longest first, and the unit that is read
 _UNITS = {
     "mm_per_min": "mm/min",
@@ -28,12 +30,14 @@ _UNITS = {
     "J": "J",
     "s": "s",
 }
+#: beginnings of the keys of roughness, which inches are too coarse for
+_ROUGHNESS = ("Ra_", "Rz_")
 #: told above the table
 _TOLD_ELSEWHERE = frozenset({"title", "verdict", "reason"})
 _MOST_ROWS = 24
 
 
-def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
+def summary_rows(summary: Mapping[str, Any], units: UnitSystem = METRIC) -> list[tuple[str, str]]:
     """Names with units, and values of four digits, of what a summary holds that fits in a cell.
 
     Parameters
@@ -41,20 +45,22 @@ def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
     summary : mapping
         Content of summary.json; what is below the second level, lists and numbers without a unit
         are left out.
+    units : UnitSystem
+        That the table is in.
     """
-    return list(_rows(summary, ""))[:_MOST_ROWS]
+    return list(_rows(summary, "", units))[:_MOST_ROWS]
 
 
-def _rows(values: Mapping[str, Any], within: str) -> Iterator[tuple[str, str]]:
+def _rows(values: Mapping[str, Any], within: str, units: UnitSystem) -> Iterator[tuple[str, str]]:
     for key, value in values.items():
         if isinstance(value, Mapping):
             if not within:
-                yield from _rows(value, f"{_in_words(key)}, ")
+                yield from _rows(value, f"{_in_words(key)}, ", units)
         elif key not in _TOLD_ELSEWHERE:
-            yield from _row(key, value, within)
+            yield from _row(key, value, within, units)
 
 
-def _row(key: str, value: Any, within: str) -> Iterator[tuple[str, str]]:
+def _row(key: str, value: Any, within: str, units: UnitSystem) -> Iterator[tuple[str, str]]:
     if isinstance(value, bool):
         yield within + _in_words(key), "yes" if value else "no"
     elif isinstance(value, int):
@@ -65,7 +71,9 @@ def _row(key: str, value: Any, within: str) -> Iterator[tuple[str, str]]:
         for end, unit in _UNITS.items():
             if key.endswith(f"_{end}"):
                 name = _in_words(key.removesuffix(f"_{end}"))
-                yield f"{within}{name} [{unit}]", f"{value:.4g}"
+                quantity = "roughness" if key.startswith(_ROUGHNESS) else ""
+                read = units.instead_of(unit, quantity)
+                yield f"{within}{name} [{read.name}]", f"{value * read.factor:.4g}"
                 return
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.detection.chatter_detection import Detection
 from chatter.engine.record import largest_between_steps
@@ -225,6 +226,11 @@ class SimulationResult(NotebookResult):
         )
         return slice(int(first), int(max(end, first + 1)))
 
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
+
     def __repr__(self) -> str:
         """What the result is of: its arrays would fill the screen."""
         return short_repr(self)
@@ -273,11 +279,12 @@ class SimulationResult(NotebookResult):
         wanted = self.setup.resolution.revolutions
         stopped = f"interrupted after {self.revolutions:.4g} of {wanted:g} revolutions"
         apart, depth = self._uncut_between_passes, self.case.cut.axial_depth
+        length = self.units.length
         strips = (
-            f"cut.stepover: at a depth of {depth * 1e3:.4g} mm the ball cuts "
-            f"{(self.case.cut.stepover - apart) * 1e3:.4g} mm wide; passes "
-            f"{self.case.cut.stepover * 1e3:.4g} mm apart leave strips of {apart * 1e3:.3g} mm "
-            "between them"
+            f"cut.stepover: at a depth of {length.text(depth)} the ball cuts "
+            f"{length.text(self.case.cut.stepover - apart)} wide; passes "
+            f"{length.text(self.case.cut.stepover)} apart leave strips of "
+            f"{length.text(apart, '.3g')} between them"
             if apart > 0.0
             else ""
         )

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from chatter.compile.cutter import edge_law, flank_table
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.unit_system import units_of
 from chatter.simulation.resolution import Resolution, outermost_radius
 from chatter.simulation.spindle import ProgrammedSpindle, Spindle, ToolPath
 from chatter.simulation.tool_course import ToolCourse
@@ -304,7 +305,7 @@ def _boxes(
         if not any(adds for layer in layers for _, adds in layer):
             raise InputError(
                 f"{case.name}: stock: no box lies at the height of the edge, 0 to "
-                f"{case.cut.axial_depth * 1e3:g} mm above the tip at z = 0"
+                f"{units_of(case).length.text(case.cut.axial_depth, 'g')} above the tip at z = 0"
             )
         return layers
     return [
@@ -329,9 +330,11 @@ def _across(band: UncutBand, radius: float, widest: float, size: float) -> tuple
 def _refuse_too_coarse(case: Case, size: float) -> None:
     coarsest = _COARSEST_SHARE * case.tool.diameter
     if size > coarsest:
+        length = units_of(case).length
         raise InputError(
-            f"{case.name}: simulation.resolution: {size * 1e3:g} mm is too coarse for a tool of "
-            f"{case.tool.diameter * 1e3:g} mm; at most {coarsest * 1e3:.3g} mm are allowed"
+            f"{case.name}: simulation.resolution: {length.text(size, 'g')} is too coarse for a "
+            f"tool of {length.text(case.tool.diameter, 'g')}; at most "
+            f"{length.text(coarsest, '.3g')} are allowed"
         )
 
 

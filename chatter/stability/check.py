@@ -16,6 +16,7 @@ from chatter.description.formatting import distinct_from, to_digits
 from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import (
@@ -100,6 +101,11 @@ class StabilityCheck(NotebookResult):
     notes: tuple[str, ...] = ()
     neglected: tuple[NeglectedEffect, ...] = ()
     radius_method: str = ""
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words, the table and the picture are in: those of the case."""
+        return units_of(self.case)
 
     @property
     def spectral_radius(self) -> float:
@@ -195,9 +201,9 @@ class StabilityCheck(NotebookResult):
 
     def sentences(self) -> list[str]:
         """Verdict in words."""
-        cut = self.case.cut
-        depth = distinct_from(1e3 * cut.axial_depth, 1e3 * self.critical_depth)
-        point = f"{depth} mm at {rpm(cut.spindle_speed):.6g} rpm"
+        cut, (unit, factor) = self.case.cut, self.units.length
+        depth = distinct_from(factor * cut.axial_depth, factor * self.critical_depth)
+        point = f"{depth} {unit} at {rpm(cut.spindle_speed):.6g} rpm"
         deciding, words = self.deciding, STABLE if self.stable else CHATTER
         if deciding:
             words = f"{words} by the linear analysis, not certain"
@@ -223,24 +229,27 @@ class StabilityCheck(NotebookResult):
         """
         if any(effect.name != EDGE_FORCES for effect in self.deciding):
             return ""
-        depth = self.case.cut.axial_depth
+        depth, (unit, factor) = self.case.cut.axial_depth, self.units.length
         if not self.stable:
             below = [limit for limit in self.limit.crossings[0] if limit <= depth]
             high = below[-1] * highest_factor(self.neglected) if below else np.inf
-            return f", from {1e3 * below[-1]:.4g} to {1e3 * high:.3g} mm" if high < np.inf else ""
+            if high == np.inf:
+                return ""
+            return f", from {factor * below[-1]:.4g} to {factor * high:.3g} {unit}"
         low, limit = self.lowest_depth, self.critical_depth
         if not (np.isfinite(limit) and 0.0 < low < depth):
             return ""
-        return f", from {1e3 * limit:.4g} to {1e3 * low:.3g} mm"
+        return f", from {factor * limit:.4g} to {factor * low:.3g} {unit}"
 
     def rows(self) -> list[list[str]]:
         """Table of the verdict: what, and how much."""
-        cut, tool = self.case.cut, self.case.tool
+        cut, tool, units = self.case.cut, self.case.tool, self.units
+        cutting_speed, feed_rate = units.cutting_speed, units.feed_rate
         speed = cut.spindle_speed * tool.diameter / 2.0
         wide, effective = diameter_in_cut(self.case), []
         if wide is not None:
-            there = f"{30.0 * wide * cut.spindle_speed:.4g} m/min there"
-            effective = [["effective diameter", f"{1e3 * wide:.4g} mm, {there}"]]
+            there = cutting_speed.text(0.5 * wide * cut.spindle_speed)
+            effective = [["effective diameter", f"{units.length.text(wide)}, {there} there"]]
         return [
             ["critical depth", self._depth()],
             *self._lowest(),
@@ -249,11 +258,14 @@ class StabilityCheck(NotebookResult):
                 "spectral radius",
                 f"{distinct_from(self.spectral_radius, 1.0)}{self._radius_by()} (below 1: stable)",
             ],
-            ["cutting speed", f"{to_digits(60.0 * speed, 4)} m/min"],
+            ["cutting speed", f"{to_digits(cutting_speed.factor * speed, 4)} {cutting_speed.name}"],
             *effective,
             *self._engagement(),
             *self._life(speed),
-            ["feed rate", f"{to_digits(60e3 * self.case.feed_speed, 4)} mm/min"],
+            [
+                "feed rate",
+                f"{to_digits(feed_rate.factor * self.case.feed_speed, 4)} {feed_rate.name}",
+            ],
             ["method", self.method],
         ]
 
@@ -275,7 +287,7 @@ class StabilityCheck(NotebookResult):
         band = self.case.uncut_band
         entry, leave = _degrees(np.ravel(slice_engagement(band, radius)))
         return [
-            ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
+            ["width of cut", self.units.length.text(band.width(radius)[0])],
             ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
             *self._thickest_chip(),
         ]
@@ -284,7 +296,7 @@ class StabilityCheck(NotebookResult):
         """Thickest chip of the rigid cut of a straight edge; a corner makes it thinner."""
         if cutter_of(self.case).corner_radius > 0.0:
             return []
-        return [["thickest chip", f"{1e3 * thickest_chip(self.case):.3g} mm"]]
+        return [["thickest chip", self.units.length.text(thickest_chip(self.case), ".3g")]]
 
     def _engagement_of_inclined(self) -> list[list[str]]:
         case = self.case
@@ -295,7 +307,7 @@ class StabilityCheck(NotebookResult):
         )
         width = inclined_engagement(case, cutter_of(case)).width
         return [
-            ["width of cut", f"{1e3 * width:.4g} mm"],
+            ["width of cut", self.units.length.text(width)],
             ["tooth in the cut", f"{angles} about the inclined axis"],
         ]
 
@@ -305,16 +317,18 @@ class StabilityCheck(NotebookResult):
         if not np.isfinite(limit) or not low < limit:
             return []
         names = ", ".join(one.name for one in self.neglected if one.lowest < 1.0)
-        known = f"{1e3 * low:.3g} mm" if low > 0.0 else "not known"
+        known = self.units.length.text(low, ".3g") if low > 0.0 else "not known"
         return [[f"at least, with {names}", known]]
 
     def _depth(self) -> str:
+        length, depth = self.units.length, self.case.cut.axial_depth
         if np.isfinite(self.critical_depth):
-            return f"{distinct_from(1e3 * self.critical_depth, 1e3 * self.case.cut.axial_depth)} mm"
+            limit = distinct_from(length.factor * self.critical_depth, length.factor * depth)
+            return f"{limit} {length.name}"
         tool = self.case.tool
         reached = self.max_depth >= tool.depth_that_tool_allows * (1.0 - 1e-9)
         why = f", tool.{tool.limiting_length}" if reached else ""
-        return f"no limit up to {1e3 * self.max_depth:.4g} mm{why}"
+        return f"no limit up to {length.text(self.max_depth)}{why}"
 
     def plot(self) -> Figure:
         """Return the stable depths at the operating speed as a matplotlib figure."""

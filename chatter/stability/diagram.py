@@ -14,7 +14,9 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.description.whole_files import write_whole
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.io.result_tables import Column, Columns
@@ -222,6 +224,11 @@ class StabilityDiagram(SavedResult):
     resting_friction: float = 1.0
 
     @property
+    def units(self) -> UnitSystem:
+        """Units that the words, the tables and the picture are in: those of the case."""
+        return units_of(self.case)
+
+    @property
     def neglected_at_all_speeds(self) -> tuple[NeglectedEffect, ...]:
         """What the linear limits leave out at every speed alike, with a known bound."""
         return tuple(one for one in self.neglected if one.name == EDGE_FORCES)
@@ -335,13 +342,14 @@ class StabilityDiagram(SavedResult):
         """Return sentences for the terminal."""
         lines, summary = _report_of(self.excluded), self.summary()
         if self.is_over_speed:
-            return [*lines, *_sentences_over_speed(summary)]
+            return [*lines, *_sentences_over_speed(summary, self.units)]
+        length = self.units.instead_of("mm")
         for name in ("lowest_limit", "highest_limit"):
             end = summary[name]
             depth = end["critical_depth_mm"]
-            limit = f"> {end['max_axial_depth_mm']:.4g}" if depth is None else f"{depth:.4g}"
+            limit = _shown_limit(depth, end["max_axial_depth_mm"], length)
             value = f"{end['value']:.4g} {self.axis.unit}".strip()
-            lines.append(f"{name.replace('_', ' ')} {limit} mm, at {self.axis.name} = {value}")
+            lines.append(f"{name.replace('_', ' ')} {limit}, at {self.axis.name} = {value}")
         return lines
 
     def save(self, folder: str | Path, tables: str = "csv") -> list[Path]:
@@ -381,27 +389,33 @@ class StabilityDiagram(SavedResult):
         }
 
 
-def _sentences_over_speed(summary: Mapping[str, Any]) -> list[str]:
+def _shown_limit(depth: float | None, searched: float, length: UsualUnit) -> str:
+    """Limit, mm, in a unit of length; how far was searched where there is none."""
+    return f"> {length.text(searched)}" if depth is None else length.text(depth)
+
+
+def _sentences_over_speed(summary: Mapping[str, Any], units: UnitSystem) -> list[str]:
     """Lowest limit, verdict on the cut, and the pockets that remove most."""
     lowest, cut = summary["lowest_limit"], summary["operating_point"]
-    deepest = summary["max_axial_depth_mm"]
+    length, removal_rate = units.instead_of("mm"), units.instead_of("cm^3/min")
     if lowest["critical_depth_mm"] is None:
-        found = f"no limit down to {deepest:.4g} mm"
+        found = f"no limit down to {length.text(summary['max_axial_depth_mm'])}"
     else:
         found = (
-            f"lowest limit {lowest['critical_depth_mm']:.4g} mm, at "
+            f"lowest limit {length.text(lowest['critical_depth_mm'])}, at "
             f"{lowest['spindle_speed_rpm']:.0f} rpm, chatter at "
             f"{lowest['chatter_frequency_Hz']:.0f} Hz"
         )
     verdict = "stable" if cut["stable"] else "chatter"
     sure = "" if cut["certain"] else " by the linear analysis, not certain"
     judged = (
-        f"{verdict}{sure}: {cut['axial_depth_mm']:.4g} mm at {cut['spindle_speed_rpm']:.0f} rpm"
+        f"{verdict}{sure}: {length.text(cut['axial_depth_mm'])} at "
+        f"{cut['spindle_speed_rpm']:.0f} rpm"
     )
     best = sorted(summary["pockets"], key=lambda one: -one["removal_rate_cm3_per_min"])
     return [judged, found] + [
-        f"pocket: {one['axial_depth_mm']:.4g} mm at {one['spindle_speed_rpm']:.0f} rpm, "
-        f"{one['removal_rate_cm3_per_min']:.3g} cm^3/min"
+        f"pocket: {length.text(one['axial_depth_mm'])} at {one['spindle_speed_rpm']:.0f} rpm, "
+        f"{removal_rate.text(one['removal_rate_cm3_per_min'], '.3g')}"
         for one in best[:_POCKETS_TOLD]
     ]
 

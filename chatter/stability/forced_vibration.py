@@ -13,6 +13,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
 from chatter.stability.edge_force_onset import (
     REPORTED_ONSET,
@@ -109,10 +110,12 @@ def _loss_of_contact(
     if found.loss_of_contact < _REPORTED_LOSS and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
     lengths = (found.amplitude, found.chip, found.chip_change)
-    amplitude, chip, change = (to_digits(length * 1e6, 3) for length in lengths)
+    units = units_of(model.case)
+    unit, factor = units.displacement
+    amplitude, chip, change = (f"{to_digits(one * factor, 3)} {unit}" for one in lengths)
     note = (
-        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of {amplitude} um "
-        f"changes the chip of {chip} um by up to {change} um: teeth lose contact over "
+        f"at {rpm(speed):.0f} rpm and {units.length.text(depth, '.3g')} the forced vibration of "
+        f"{amplitude} changes the chip of {chip} by up to {change}: teeth lose contact over "
         f"{found.loss_of_contact:.0%} of their arc, which linear methods leave out; the limit in "
         "the time domain may differ "
         "(--method time-domain)"
@@ -147,9 +150,10 @@ def neglected_edge_forces(
         because += f"may lower the limit by {share:.0%}"
     else:
         because += f"are {share:.3g} times as stiff as the chip{at}"
-    feed = to_digits(model.case.cut.feed_per_tooth * 1e6, 3)
+    unit, factor = units_of(model.case).displacement
+    feed = to_digits(model.case.cut.feed_per_tooth * factor, 3)
     note = (
-        f"edge forces set in or end where the chip of {feed} um a tooth is "
+        f"edge forces set in or end where the chip of {feed} {unit} a tooth is "
         "zero, and vibration shifts these moments, which linear methods leave out: "
         f"{because}; the time domain decides (--method time-domain)"
     )
@@ -165,7 +169,7 @@ def _share_at_limits(
     was looked for, and where they leave nothing, the share is that at the depth of the cut, m.
     """
     found = limits[np.isfinite(limits)]
-    at = f" at {depth * 1e3:.3g} mm, the depth of the cut"
+    at = f" at {units_of(model.case).length.text(depth, '.3g')}, the depth of the cut"
     if not limits.size:
         # what it leaves of the limit is known at the limit alone
         return share, 0.0, f"{at} (at the limit by `chatter check`)"
@@ -186,7 +190,8 @@ def notes_on_dashpot(model: MillingModel, method: StabilityMethod) -> tuple[str,
     share = motion.pressed / (0.5 * flank.contact_length**2)
     still = "0.5 of it" if flank.edge_radius == 0.0 else "all of it"
     return (
-        f"ploughing: at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm small vibration beside the "
+        f"ploughing: at {rpm(speed):.0f} rpm and "
+        f"{units_of(model.case).length.text(depth, '.3g')} small vibration beside the "
         f"forced vibration meets {share:.2g} of the dashpot K l^2/2 on average; beside a still "
         f"tool {still}",
     )
@@ -204,7 +209,8 @@ def _flank_beyond_the_land(
     if steep > _STEEP:
         slopes = f"slopes up to {motion.steepest:.2g}, {steep:.0%} of that of the clearance face"
         note = (
-            f"ploughing: at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm forced vibration moves "
+            f"ploughing: at {rpm(speed):.0f} rpm and "
+            f"{units_of(model.case).length.text(depth, '.3g')} forced vibration moves "
             f"the edges at {slopes}, which is pressed beyond the land; the limit in the time "
             "domain may differ (--method time-domain)"
         )

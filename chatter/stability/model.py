@@ -25,6 +25,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
 from chatter.stability.averaged_coefficients import AveragedCoefficients, averaged_coefficients
 from chatter.stability.cut_arrays import CutArrays, cut_arrays
@@ -356,16 +357,17 @@ def empirical_notes(case: Case) -> list[str]:
 
 
 def _no_limit(case: Case, cutter: Cutter) -> str:
+    depth = units_of(case).length.text(case.cut.axial_depth, "g")
     if is_inclined(case):
         return (
-            f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm no "
-            "edge of the inclined tool reaches the work, or the modes move without changing the "
+            f"{case.name}: cut: down to an axial depth of {depth} no edge of the "
+            "inclined tool reaches the work, or the modes move without changing the "
             "chip; there is no stability limit" + (hint_of_tilt(case) or _hint_of_stepover(case))
         )
     if not cutter.is_cylindrical:
         return (
             f"{case.name}: cut.radial_depth: down to an axial depth of "
-            f"{case.cut.axial_depth * 1e3:g} mm the edge does not reach the work, or the modes "
+            f"{depth} the edge does not reach the work, or the modes "
             "move along it; there is no stability limit" + _hint_of_stepover(case)
         )
     return (
@@ -381,7 +383,7 @@ def _hint_of_stepover(case: Case) -> str:
         return ""
     return (
         ". The radial depth counts from the full radius of the tool; a step from pass to pass is "
-        f'stated by stepover = "{1e3 * step:.4g} mm" in its place'
+        f'stated by stepover = "{units_of(case).length.text(step)}" in its place'
     )
 
 
@@ -393,7 +395,7 @@ def _refuse_crossing_flutes(case: Case, cutter: Cutter) -> None:
     if heights:
         raise InputError(
             f"{case.name}: tool.helix: flutes of these angles run into each other "
-            f"{min(heights) * 1e3:.3g} mm above the tip"
+            f"{units_of(case).length.text(min(heights), '.3g')} above the tip"
         )
 
 

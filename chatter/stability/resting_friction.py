@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 from chatter.stability.model import MillingModel
@@ -57,20 +59,23 @@ def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ..
         return ()
     listed = ", ".join(_sliding_from(structure, names))
     how_far = f"; their own motion makes them slide from: {listed}" if listed else ""
+    length = units_of(model.case).length
     taken = "as stuck" if amplitude == 0.0 else f"at vibration of {1e6 * amplitude:g} um"
+    highest = _highest_at(at, max(stuck, here, free), length)
     note = (
         f"frictions of axes at rest ({', '.join(names)}) are taken {taken} "
         f"(structure.friction_amplitude): at {rpm(speed):.0f} rpm the zeroth-order limit is "
-        f"{_shown(here)} so, {_shown(stuck)} with them stuck, as under vanishing vibration, and "
-        f"{_shown(free)} without them{_highest_at(at, max(stuck, here, free))}{how_far}"
+        f"{_shown(here, length)} so, {_shown(stuck, length)} with them stuck, as under "
+        f"vanishing vibration, and {_shown(free, length)} without them{highest}{how_far}"
     )
     effect = NeglectedEffect(
         name="resting friction",
         share=high / low - 1.0,
         lowest=low / here if math.isfinite(here) else 0.0,
         highest=high / here if math.isfinite(here) else 1.0,
-        because=f"frictions of axes at rest make the limit anything from {_shown(low)} to "
-        f"{_shown(high)}, by the amplitude of vibration (zeroth order)",
+        because="frictions of axes at rest make the limit anything from "
+        f"{_shown(low, length)} to {_shown(high, length)}, by the amplitude of vibration "
+        "(zeroth order)",
         note=note,
     )
     return (effect,)
@@ -119,16 +124,17 @@ def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
     return tuple(effect.note for effect in neglected_resting_friction(model))
 
 
-def _highest_at(limits: Mapping[float, float], others: float) -> str:
+def _highest_at(limits: Mapping[float, float], others: float, length: UsualUnit) -> str:
     """Say at which amplitude, m, a limit, m, is above all others; empty where none is."""
     amplitude, highest = max(limits.items(), key=lambda one: one[1])
     if highest <= others:
         return ""
-    return f"; it is highest, {_shown(highest)}, at vibration of about {1e6 * amplitude:g} um"
+    shown = _shown(highest, length)
+    return f"; it is highest, {shown}, at vibration of about {1e6 * amplitude:g} um"
 
 
-def _shown(depth: float) -> str:
-    return f"{depth * 1e3:.3g} mm" if math.isfinite(depth) else "none"
+def _shown(depth: float, length: UsualUnit) -> str:
+    return length.text(depth, ".3g") if math.isfinite(depth) else "none"
 
 
 def _sliding_from(structure: LinearisedMachine, names: Sequence[str]) -> Iterator[str]:

@@ -16,6 +16,7 @@ from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.given_values import text_given, values_given
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.io.result_tables import Column, Columns
 from chatter.simulation.perturbation.multiplier import periods_per_revolution
@@ -86,6 +87,11 @@ class BifurcationDiagram(SavedResult):
     path: str
     points: tuple[BifurcationPoint, ...]
     linear: LinearLimits = NO_LIMITS
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
 
     def summary(self) -> dict:
         """Return the content of summary.json."""

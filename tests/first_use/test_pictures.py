@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 import chatter
+from chatter.description.unit_system import METRIC
 from chatter.description.units import from_rpm
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.lobes_before_after import LobesBeforeAfter
@@ -206,7 +207,7 @@ def test_a_lone_value_between_jumps_is_marked():
     figure = Figure()
     axes = figure.subplots()
     x = np.array([1.0, 2.0, 3.0])
-    crossings = [np.array([0.67e-3]), np.array([0.29e-3, 0.51e-3, 0.71e-3]), np.array([0.42e-3])]
+    crossings = [np.array([0.67]), np.array([0.29, 0.51, 0.71]), np.array([0.42])]
     _draw_across_jumps(axes, x, crossings, np.array([1, 2]))
     drawn = {tuple(map(float, np.round(line.get_ydata(), 6))) for line in axes.lines}
     assert drawn == {(0.67, 0.71), (0.29, 0.51, 0.71), (0.29, 0.42)}
@@ -230,6 +231,7 @@ def test_the_depth_of_the_cut_is_written_within_the_axes_of_the_distribution():
         max_depth=5e-3,
         case=cut(),
         operating_quantiles=lambda: limits[[2, 25, 47]],
+        units=METRIC,
     )
     figure = Figure(layout="constrained")
     axes = figure.subplots()
@@ -243,7 +245,9 @@ def test_lowest_limits_of_a_pitch_design_stand_beside_the_curves():
     """ "3.74 mm" was written across the curve."""
     speeds = from_rpm(np.linspace(4500.0, 6500.0, 5))
     designs = [Design("even", (90.0,) * 4, np.full(5, depth), 0.0) for depth in (1.4e-3, 3.7e-3)]
-    found = SimpleNamespace(speeds=speeds, original=designs[0], best=designs[1], max_depth=9e-3)
+    found = SimpleNamespace(
+        speeds=speeds, original=designs[0], best=designs[1], max_depth=9e-3, units=METRIC
+    )
     figure = Figure(layout="constrained")
     axes = figure.subplots()
     draw_limits(axes, found)

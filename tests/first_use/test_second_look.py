@@ -1,12 +1,14 @@
 """What a second look by the documents alone has met: each may not be met again."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import chatter
 from chatter.description.errors import InputError
+from chatter.description.unit_system import METRIC
 from tests.command_line import chatter_command
 from tests.first_use.shop import cut, written
 from tests.places import EXAMPLES
@@ -116,7 +118,8 @@ def test_a_depth_that_nothing_bounds_is_not_called_zero():
     from chatter.studies.whatif.summary import value_text
 
     certain = MEASURES["critical depth"].quantities["certain_depth_mm"]
-    told = value_text(certain, Outcome({"certain_depth_mm": 0.0}), "certain_depth_mm")
+    outcome = Outcome({"certain_depth_mm": 0.0})
+    told = value_text(SimpleNamespace(units=METRIC), certain, outcome, "certain_depth_mm")
     assert told == "not known"
 
 

@@ -8,6 +8,7 @@ import pytest
 
 import chatter
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import METRIC
 from chatter.report.parameters import parameter_row
 from chatter.stability.methods.time_domain.critical_depths import _SimulatedCuts
 from chatter.studies.whatif.measures import Curve, Outcome
@@ -307,7 +308,7 @@ def test_the_sign_of_an_error_of_the_surface_is_in_its_words(wall, floor, told):
         "surface_location": {"floor_um": floor},
         "roughness": {"wall": nothing, "floor": nothing},
     }
-    lines = _surface(summary, 90.0)
+    lines = _surface(summary, 90.0, METRIC)
     for line, words in zip(lines, told, strict=True):
         assert line.endswith(words)
 

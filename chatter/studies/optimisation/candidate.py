@@ -12,7 +12,12 @@ from pydantic import TypeAdapter
 from chatter.description.units import rpm
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.operating_point import OperatingPoint, model_with, rounded
+from chatter.studies.optimisation.operating_point import (
+    OperatingPoint,
+    model_with,
+    rounded,
+    step_of_depths,
+)
 from chatter.studies.optimisation.speed_depth_slice import (
     STABILITY,
     SpeedDepthSlice,
@@ -107,9 +112,9 @@ def max_usage(candidate: Candidate) -> float:
 
 def candidate_at(model: MillingModel, limits: Limits, point: OperatingPoint) -> Candidate:
     """Candidate at a point, in round numbers; a little less deep where rounding needs it."""
-    exact = point
+    exact, step = point, step_of_depths(model.case)
     for _ in range(_MOST_TIMES):
-        point = rounded(exact)
+        point = rounded(exact, step)
         here = model_with(model, point.radial_depth, point.feed_per_tooth)
         grid_slice = _slice_at(here, limits, point)
         if grid_slice.feasible[0, 0]:

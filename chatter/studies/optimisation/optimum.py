@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from chatter.description.case import Case
 from chatter.description.formatting import to_digits
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.io.result_tables import Column, Columns
@@ -65,6 +66,11 @@ class Optimum(SavedResult):
     notes: tuple[str, ...] = ()
 
     @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
+
+    @property
     def best(self) -> Candidate | None:
         """The best cut; None where no cut keeps all limits."""
         verified = [
@@ -93,13 +99,13 @@ class Optimum(SavedResult):
 
     def _why_no_candidate(self) -> str:
         """What the time domain says of the candidates, and how to search further."""
-        point = self.candidates[0].point
+        point, length = self.candidates[0].point, self.units.length
         return (
             "no candidate of the linear search holds all limits in the time domain, nor up to "
             f"{EASING * EASINGS:.0%} less deep, as far as is tried: such as "
-            f"{1e3 * point.axial_depth:.3g} mm at {rpm(point.spindle_speed):.0f} rpm; "
+            f"{length.text(point.axial_depth, '.3g')} at {rpm(point.spindle_speed):.0f} rpm; "
             "`chatter check --method time-domain` computes the limit that holds at a "
-            f"speed, and optimum.depths.to, {1e3 * self.limits.depths[-1]:.3g} mm here, "
+            f"speed, and optimum.depths.to, {length.text(self.limits.depths[-1], '.3g')} here, "
             "keeps the search below it"
         )
 
@@ -135,15 +141,18 @@ class Optimum(SavedResult):
         """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
         if self.best is None:
             return []
-        best = self.best
-        point, known = best.point, best.probability
+        best, units = self.best, self.units
+        point, known, length = best.point, best.probability, units.length
+        rate, torque, small = units.removal_rate, units.torque, units.displacement
         lines = [
-            f"{to_digits(rpm(point.spindle_speed), 6)} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
-            f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
-            f"{to_digits(best.removal_rate * _PER_MINUTE, 4)} cm^3/min",
-            f"{best.power * 1e-3:.3g} kW, {to_digits(best.torque, 3)} N m, deflection "
-            f"{to_digits(best.deflection * 1e6, 3)} um, "
-            f"surface error {to_digits(best.surface_error * 1e6, 3)} um",
+            f"{to_digits(rpm(point.spindle_speed), 6)} rpm, {length.text(point.axial_depth)} "
+            f"deep, {length.text(point.radial_depth)} wide, "
+            f"{length.text(point.feed_per_tooth)} a tooth: "
+            f"{to_digits(best.removal_rate * rate.factor, 4)} {rate.name}",
+            f"{units.instead_of('kW').text(best.power * 1e-3, '.3g')}, "
+            f"{to_digits(best.torque * torque.factor, 3)} {torque.name}, deflection "
+            f"{to_digits(best.deflection * small.factor, 3)} {small.name}, "
+            f"surface error {to_digits(best.surface_error * small.factor, 3)} {small.name}",
         ]
         if known is not None:
             low, high = known.interval

@@ -11,6 +11,7 @@ from chatter.description.arrays import Array
 from chatter.description.brief_repr import BriefRepr
 from chatter.description.case import Case
 from chatter.description.formatting import rounded_down
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult
 from chatter.io.result_tables import Column, Columns
@@ -76,6 +77,11 @@ class PitchResult(SavedResult):
     notes: tuple[str, ...] = ()
 
     @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
+
+    @property
     def best(self) -> Design:
         """Design with the highest score."""
         return self.designs[0]
@@ -134,8 +140,8 @@ class PitchResult(SavedResult):
         lines = [
             f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
             f"{self._lowest(self.best)}, with that of the case {self._lowest(self.original)}",
-            f"stable at any of these speeds {_below(self.best)}, with that of the case "
-            f"{_below(self.original)}{self._taken_off()}",
+            f"stable at any of these speeds {self._below(self.best)}, with that of the case "
+            f"{self._below(self.original)}{self._taken_off()}",
             f"largest pitch ratio {self.best.max_pitch_ratio:.3g} of the mean",
         ]
         if not self.is_better:
@@ -145,8 +151,14 @@ class PitchResult(SavedResult):
     def _lowest(self, one: Design) -> str:
         """Lowest limit of a design in words."""
         if one.lowest_limit >= self.max_depth:
-            return f"none up to {self.max_depth * 1e3:.4g} mm"
-        return f"{one.lowest_limit * 1e3:.4g} mm"
+            return f"none up to {self.units.length.text(self.max_depth)}"
+        return self.units.length.text(one.lowest_limit)
+
+    def _below(self, one: Design) -> str:
+        """Depth below which a design is stable at any of the speeds, in words."""
+        unit, factor = self.units.length
+        depth = one.stable_below * factor
+        return f"below {rounded_down(depth)} {unit}" if depth > 0.0 else "at no depth for certain"
 
     def _taken_off(self) -> str:
         """What of the lowest limits is not certain."""
@@ -185,9 +197,3 @@ class PitchResult(SavedResult):
             "critical_depth_after [mm]": Column(self.best.limits * 1e3, ".6g"),
         }
         return {"pitch": designs, "lobes": limits}
-
-
-def _below(one: Design) -> str:
-    """Depth below which a design is stable at any of the speeds, in words."""
-    depth = one.stable_below * 1e3
-    return f"below {rounded_down(depth)} mm" if depth > 0.0 else "at no depth for certain"

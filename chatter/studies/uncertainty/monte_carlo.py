@@ -13,6 +13,7 @@ from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
+from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.io.result_tables import Column, Columns
@@ -121,6 +122,11 @@ class Uncertainty(SavedResult):
         kept = lowest_factor(self.neglected)
         certain = self.stable & (self.operating * kept > self.case.cut.axial_depth)
         return float(np.mean(certain)) if kept > 0.0 else 0.0
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case."""
+        return units_of(self.case)
 
     def for_certain_in_words(self) -> str:
         """What is left of the probability by what linear limits leave out; empty where all is."""

@@ -59,6 +59,7 @@ class Quantity:
     at_zero: str = ""  # what is said in the place of 0
     most: float = math.inf  # beyond which it tells nothing but that
     bounds: str = ""  # number that it is a bound of, beside which it is said only where it differs
+    read_as: str = ""  # of `UnitSystem`, where its unit does not tell
 
 
 @dataclass(frozen=True)
@@ -317,8 +318,8 @@ _MEASURES = (
         "surface",
         {
             "surface_location_error_um": Quantity("surface location error", "um"),
-            "Ra_um": Quantity("roughness Ra", "um"),
-            "Rz_um": Quantity("roughness Rz", "um"),
+            "Ra_um": Quantity("roughness Ra", "um", read_as="roughness"),
+            "Rz_um": Quantity("roughness Rz", "um", read_as="roughness"),
             "chatter_frequency_Hz": _CHATTER_FREQUENCY,
         },
         _surface,

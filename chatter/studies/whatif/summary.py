@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from chatter.description.case import Case
 from chatter.description.formatting import to_digits
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.stability.neglected_effects import NOT_CERTAIN
 from chatter.studies.whatif.measures import Curve, Outcome, Quantity
 
@@ -40,24 +41,25 @@ def title_of(study: WhatIf, quantity: Quantity) -> str:
     return quantity.title.format(speed=speed)
 
 
-def unit_of(quantity: Quantity, outcome: Outcome, key: str) -> str:
-    """Unit of a quantity at a point."""
-    return outcome.units.get(key, quantity.unit)
+def unit_of(study: WhatIf, quantity: Quantity, outcome: Outcome, key: str) -> UsualUnit:
+    """Unit that a quantity at a point is read in, and its number in one of the numbers."""
+    unit = outcome.units.get(key, quantity.unit)
+    return study.units.instead_of(unit, quantity.read_as)
 
 
-def value_text(quantity: Quantity, outcome: Outcome, key: str) -> str:
+def value_text(study: WhatIf, quantity: Quantity, outcome: Outcome, key: str) -> str:
     """Value with its unit, or why there is none."""
     value = outcome.numbers.get(key)
-    unit = unit_of(quantity, outcome, key)
+    unit, factor = unit_of(study, quantity, outcome, key)
     if value == 0.0 and quantity.at_zero:
         return quantity.at_zero
     if value is not None and value > quantity.most:
-        return f"more than {quantity.most:.6g} {unit}".strip()
+        return f"more than {quantity.most * factor:.6g} {unit}".strip()
     if value is not None:
-        return f"{to_digits(value, 4)} {unit}".strip()
+        return f"{to_digits(value * factor, 4)} {unit}".strip()
     beyond = outcome.numbers.get(quantity.beyond)
     if beyond is not None:
-        return f"above {to_digits(beyond, 4)} {unit}"
+        return f"above {to_digits(beyond * factor, 4)} {unit}"
     return "none"
 
 
@@ -94,7 +96,7 @@ def _alone(study: WhatIf) -> list[str]:
     if len(study.outcomes) != 1 or study.outcomes[0].failure:
         return []
     quantity = study.measure.quantities[study.quantity]
-    value = value_text(quantity, study.outcomes[0], study.quantity)
+    value = value_text(study, quantity, study.outcomes[0], study.quantity)
     return [f"{title_of(study, quantity)}: {value} at {_where(study, 0)}"]
 
 
@@ -189,7 +191,7 @@ def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[s
         return []
     found = []
     for key, quantity in _changed_quantities(study, before, after).items():
-        pair = value_text(quantity, before, key), value_text(quantity, after, key)
+        pair = value_text(study, quantity, before, key), value_text(study, quantity, after, key)
         share = change_text(before.numbers.get(key), after.numbers.get(key))
         told_as_words = quantity.at_zero in pair or any(one.startswith("more than") for one in pair)
         if told_as_words:
@@ -262,7 +264,7 @@ def _extremes(study: WhatIf) -> list[str]:
         return []
     quantity = study.measure.quantities[study.quantity]
     found = [
-        f"{value_text(quantity, study.outcomes[k], study.quantity)} at {_where(study, k)}"
+        f"{value_text(study, quantity, study.outcomes[k], study.quantity)} at {_where(study, k)}"
         for k in (low, high)
     ]
     return [f"{title_of(study, quantity)}: from {found[0]} to {found[1]}"]
@@ -271,7 +273,9 @@ def _extremes(study: WhatIf) -> list[str]:
 def _tornado(study: WhatIf) -> list[str]:
     quantity = study.measure.quantities[study.quantity]
     base = study.outcomes[0]
-    found = [f"{title_of(study, quantity)}: {value_text(quantity, base, study.quantity)} as given"]
+    found = [
+        f"{title_of(study, quantity)}: {value_text(study, quantity, base, study.quantity)} as given"
+    ]
     for index in ranked(study):
         one = study.variations[index]
         low, high = study.outcomes[1 + 2 * index], study.outcomes[2 + 2 * index]
@@ -281,8 +285,8 @@ def _tornado(study: WhatIf) -> list[str]:
         ]
         found.append(
             f"{one.path} from {one.values[0].label} to {one.values[-1].label}: "
-            f"{value_text(quantity, low, study.quantity)}{shares[0]} to "
-            f"{value_text(quantity, high, study.quantity)}{shares[1]}"
+            f"{value_text(study, quantity, low, study.quantity)}{shares[0]} to "
+            f"{value_text(study, quantity, high, study.quantity)}{shares[1]}"
         )
     return found + failures(study)
 

@@ -8,8 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.given_values import text_given, values_given
+from chatter.description.unit_system import METRIC, UnitSystem, units_of
 from chatter.io.result_files import SavedResult
 from chatter.io.result_tables import Column, Columns
 from chatter.studies.model import fingerprint, model_or_read, patched
@@ -55,6 +57,11 @@ class WhatIf(SavedResult):
     quantity: str
     points: tuple[DesignPoint, ...]
     outcomes: tuple[Outcome, ...]
+
+    @property
+    def units(self) -> UnitSystem:
+        """Units that the words and the picture are in: those of the case, metric of a machine."""
+        return units_of(self.model) if isinstance(self.model, Case) else METRIC
 
     def sentences(self) -> list[str]:
         """What changed, by how much."""

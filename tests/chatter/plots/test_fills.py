@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
+from chatter.description.unit_system import METRIC
 from chatter.plots import style
 from chatter.plots.stability_diagram import _fill
 from chatter.plots.style import new_figure, power_of_ten
@@ -24,6 +25,7 @@ def filled(speeds, crossings, searched, *, over_speed):
         limits=SimpleNamespace(crossings=[1e-3 * np.array(one) for one in crossings]),
         max_depth=1e-3 * np.array(searched),
         is_over_speed=over_speed,
+        units=METRIC,
     )
     axes = new_figure(6.0, 4.0).subplots()
     _fill(axes, diagram, 4e-3)
