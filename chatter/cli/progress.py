@@ -43,6 +43,7 @@ _PACE = 1.0
 _OF_LATE = 20.0
 #: parts that it is taken over at the least: a single one may take a hundred times another
 _PARTS = 10
+_COMPILING = "compiling what is used for the first time"
 
 
 class RunningWork:
@@ -158,7 +159,7 @@ class RunningWork:
             return f"{self.description} ..."
         so_far = f"{elapsed_in_words(self.elapsed)} so far"
         if self._is_compiling() and not done:
-            so_far = f"compiling what is used for the first time, {so_far}"
+            so_far = f"{_COMPILING}, {so_far}"
         if not total or (total == 1 and not done):
             return f"{self.description}: {so_far}"
         if not done:
@@ -166,7 +167,8 @@ class RunningWork:
             return f"{self.description}: 0 of {total}, {so_far}"
         if done >= total and self._newest is not None:
             since = in_words(self._clock() - self._newest[0])
-            return f"{self.description}: all {total} done, evaluating the result for {since}"
+            what = _COMPILING if self._is_compiling() else "evaluating the result"
+            return f"{self.description}: all {total} done, {what} for {since}"
         return f"{self.description}: {done} of {total} ({done / total:.0%}){self._rest()}"
 
     def _rest(self) -> str:

@@ -323,3 +323,12 @@ def test_a_part_that_has_just_begun_has_no_time():
     assert work.line() == "critical depth ..."
     now[0] = 6.0
     assert work.line() == "critical depth: 3 s so far"
+
+
+def test_compiling_after_the_last_part_is_named(clock):
+    """Beside a ball's limits a minute of compiling was "evaluating the result"."""
+    work = RunningWork("limits at all speeds", clock, is_compiling=lambda: True)
+    work(34, 34)
+    clock.now += 30.0
+    words = "compiling what is used for the first time for 30 s"
+    assert work.line() == f"limits at all speeds: all 34 done, {words}"
