@@ -28,6 +28,7 @@ _PLOUGHING = {
     "tool.flank_wear": "0.05 mm",
     "tool.clearance_angle": "6 deg",
 }
+_INCLINED = {"cut.lead": "2 deg"}
 _VARYING = {"cut.speed_variation.amplitude": 0.1, "cut.speed_variation.frequency": "20 Hz"}
 _CONTACT = {"contact.stiffness": "2 N/um", "contact.damping": "60 N*s/m"}
 _SPEEDS = {"lobes.speeds": {"from": "8000 rpm", "to": "12000 rpm", "count": 4}}
@@ -98,6 +99,7 @@ def _of_stability() -> Iterator[Question]:
         "viscous process damping": _VISCOUS,
         "ploughing of a worn flank": _PLOUGHING,
         "varying spindle speed": _VARYING,
+        "inclined axis": _HELIX | _INCLINED,
         "contact": _CONTACT,
     }.items():
         yield Question(f"verdict, {name}", partial(check, _case(patch=patch)))
@@ -115,6 +117,7 @@ def _of_time() -> Iterator[Question]:
         "ploughing of a worn flank": _PLOUGHING,
         "varying spindle speed": _VARYING,
         "contact": _CONTACT,
+        "inclined axis": _HELIX | _INCLINED,
         "carved by dexels": {"simulation.chip": "dexel"},
         "carved by voxels": {"simulation.chip": "voxel"},
     }

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chatter.compile.inclined_axis import inclined_engagement
 from chatter.description.case import Case
 from cutting.edge_segments.earlier_passes import GAUSS
-from cutting.edge_segments.inclined_edges import FIRST_ANGLE
+from cutting.edge_segments.points_about_axis import FIRST_ANGLE
 from cutting.edge_segments.segments import inclined_line
 from cutting.engagement.inclined_tool import InclinedEngagement
 from cutting.force.force_spectrum import slices_at

@@ -14,6 +14,7 @@ methods/               a package per method
 reference_speeds       speed-dependent dynamics: one structure per reference speed
 limit_search           from multipliers at points to limits over spindle speed
 limits_by_depth        limits of a cut whose arcs change with the depth: an inclined tool
+shared_depths          growth rate between depths that all speeds share
 crossings, brackets    changes of stability along depth; roots in brackets
 boundary_continuation  multi-dimensional bisection (Bachrathy and Stepan 2012)
 arnoldi, hessenberg    dominant eigenpair of an operator (Arnoldi 1951; Francis 1961)

@@ -6,15 +6,17 @@ depth has a cut of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray
 from chatter.description.progress import no_progress
-from chatter.engine.parallel import each
+from chatter.stability.brackets import GrowthRate
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve, limits_at
+from chatter.stability.shared_depths import SharedDepths
 from cutting.edge_segments.segments import period_angle
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ _MOST_DEPTHS = 40
 _TOLERANCE = 2e-4
 #: up to this many speeds limits are those of multipliers that have converged
 _FEW_SPEEDS = 8
+#: chatter frequencies at depths beside each other that differ by less are of one mode, relative
+_ALIKE = 0.005
 #: of the frequency of the period: a chatter frequency so close to a multiple of half of it is a
 #: flip
 _FLIP = 1e-3
@@ -57,20 +61,35 @@ def limits_by_depth(method: StabilityMethod, sweep: Sweep) -> LimitCurve:
         ]
         return _growth(np.array(found))
 
-    refined = converged if len(speeds) <= _FEW_SPEEDS else at_once
+    def at_depth(index: IntegerArray, depth: float) -> Array:
+        return at_once(index, np.full(index.size, depth))
+
+    def frequency(index: IntegerArray, at: Array) -> Array:
+        points = sweep._replace(speeds=speeds[index], depths=at, progress=no_progress)
+        return _by_depth(method.chatter_frequencies_of, points)
+
+    grid = np.stack(columns, axis=1)
+    shared = SharedDepths(grid, few, at_depth, at_once)
+    refined = converged if len(speeds) <= _FEW_SPEEDS else shared
 
     def at_limits(index: IntegerArray, at: Array) -> tuple[list[str], Array]:
-        cuts = [model.at_cut(float(speeds[i]), float(d)) for i, d in zip(index, at, strict=True)]
-        found = each(lambda i: method.chatter_frequency(cuts[i]), len(cuts))
-        period = period_angle(model.cutter) / speeds[index]
-        return _kinds(np.array(found) * period), np.array(found)
+        if len(speeds) <= _FEW_SPEEDS:
+            found = frequency(index, at)
+        else:
+            found = _interpolated(frequency, index, at, *shared.beside(at))
+        return _kinds(found * period_angle(model.cutter) / speeds[index]), found
 
-    crossings = find_crossings(np.stack(columns, axis=1), few, refined, _TOLERANCE)
+    crossings = find_crossings(grid, few, refined, _TOLERANCE)
     return limits_at(at_limits, speeds, crossings, np.zeros(len(speeds), dtype=np.int64))
 
 
 def radius_by_depth(method: StabilityMethod, sweep: Sweep) -> Array:
     """Spectral radius at points, those of one depth together."""
+    return _by_depth(method.radius_of, sweep)
+
+
+def _by_depth(of_points: Callable[[Sweep], Array], sweep: Sweep) -> Array:
+    """Values at points, those of one depth together."""
     found = np.empty(len(sweep.speeds))
     different, group = np.unique(sweep.depths, return_inverse=True)
     for number, depth in enumerate(different):
@@ -78,8 +97,27 @@ def radius_by_depth(method: StabilityMethod, sweep: Sweep) -> Array:
         one = sweep._replace(
             speeds=sweep.speeds[own], depths=np.full(own.size, depth), progress=no_progress
         )
-        found[own] = method.radius_of(one)
+        found[own] = of_points(one)
         sweep.progress(number + 1, different.size)
+    return found
+
+
+def _interpolated(
+    value: GrowthRate, index: IntegerArray, at: Array, low: Array, high: Array
+) -> Array:
+    """Values (k,) at depths between two each, on a line where those at the two are alike."""
+    found = np.full(at.size, np.nan)
+    inside = np.flatnonzero(np.isfinite(low))
+    if inside.size:
+        speeds = np.tile(index[inside], 2)
+        ends = value(speeds, np.concatenate([low[inside], high[inside]]))
+        below, above = ends.reshape(2, -1)
+        share = (at - low)[inside] / (high - low)[inside]
+        alike = np.abs(above - below) <= _ALIKE * below
+        found[inside] = np.where(alike, below + share * (above - below), np.nan)
+    rest = np.flatnonzero(np.isnan(found))
+    if rest.size:
+        found[rest] = value(index[rest], at[rest])
     return found
 
 

@@ -208,3 +208,14 @@ class StabilityMethod:
     def chatter_frequency(self, model: MillingModel) -> float:
         """Frequency (Hz) of the motion that grows fastest, or decays slowest, as the case cuts."""
         raise NotImplementedError
+
+    def chatter_frequencies_of(self, sweep: Sweep) -> Array:
+        """Chatter frequencies (n,), Hz, with the same dynamics at all points."""
+        from chatter.engine.parallel import each
+
+        model, speeds, depths = sweep.model, sweep.speeds, sweep.depths
+
+        def at(point: int) -> float:
+            return self.chatter_frequency(model.at_cut(float(speeds[point]), float(depths[point])))
+
+        return np.array(each(at, len(speeds)))

@@ -98,6 +98,26 @@ class InclinedEngagement:
     def _outwards(self) -> float:
         return -1.0 if self.side == "down" else 1.0
 
+    @property
+    def side_of_work(self) -> float:
+        """Sign of y on which the work lies; 0 where it lies on both."""
+        return self._outwards if self._is_bounded else 0.0
+
+    @property
+    def _is_bounded(self) -> bool:
+        given = self.stepover is not None or self.radial_depth is not None
+        return given and self.side != "slot"
+
+    @cached_property
+    def beside(self) -> tuple[Array, Array]:
+        """Heights (m,) in order and where, outwards, what lies beside the cut ends there, m."""
+        if not self._is_bounded:
+            return np.zeros(1), np.zeros(1)
+        if self.stepover is None:
+            return np.zeros(1), np.array([self._outermost - (self.radial_depth or 0.0)])
+        reach, rise = self.outline
+        return rise, self._outwards * reach - self.stepover
+
     def _outline_points(self, slope: Array) -> tuple[Array, Array]:
         """Outermost points (y, z), m, of the tool whose normals rise by angles from -z, rad.
 
@@ -177,13 +197,9 @@ class InclinedEngagement:
 
     def beside_pass(self, y: Array, z: Array) -> Array:
         """Distance, m, of points from what lies beside the cut; below zero in the air."""
-        outwards = self._outwards
-        if self.stepover is not None and self.side != "slot":
-            reach, rise = self.outline
-            return self.stepover + outwards * (y - np.interp(z, rise, reach))
-        if self.radial_depth is not None and self.side != "slot":
-            return outwards * y - (self._outermost - self.radial_depth)
-        return np.ones_like(y)
+        if not self._is_bounded:
+            return np.ones_like(y)
+        return self._outwards * y - np.interp(z, *self.beside)
 
     @property
     def _outermost(self) -> float:

@@ -56,5 +56,13 @@ class Collocation(StabilityMethod):
         speed, depth = model.operating_point
         return chatter_frequency(element_cut(model, depth), speed, depth)
 
+    def chatter_frequencies_of(self, sweep: Sweep) -> Array:
+        """Chatter frequencies at points, Hz."""
+        from chatter.stability.methods.collocation.element_cut import element_cut
+        from chatter.stability.methods.collocation.multipliers import chatter_frequencies
+
+        cut = element_cut(sweep.model, sweep.max_depth)
+        return chatter_frequencies(cut, sweep.speeds, sweep.depths)
+
 
 COLLOCATION = Collocation()

@@ -163,8 +163,12 @@ def growth_rate_at(cut: ElementCut, speeds: Array, depths: Array) -> Array:
 
 def chatter_frequency(cut: ElementCut, speed: float, depth: float) -> float:
     """Frequency (Hz) at which the motion of the dominant multiplier is largest, at a point."""
-    wanted = np.ones(1, dtype=np.bool_)
-    return float(_solved(cut, np.array([speed]), np.array([depth]), wanted)[1][0])
+    return float(chatter_frequencies(cut, np.array([speed]), np.array([depth]))[0])
+
+
+def chatter_frequencies(cut: ElementCut, speeds: Array, depths: Array) -> Array:
+    """The same (n,) at points of speed, rad/s, and depth, m."""
+    return _solved(cut, speeds, depths, np.ones(len(speeds), dtype=np.bool_))[1]
 
 
 def limit_curve(
