@@ -23,7 +23,18 @@ from chatter.io.formats.records import stated_record
 from chatter.io.signals import Signals, read_signals
 
 #: keys of [[run]] that are no override of the case
-OWN_KEYS = ("file", "from", "to", "condition", "direction", "excite", "read", "axis", "title")
+OWN_KEYS = (
+    "file",
+    "columns",
+    "from",
+    "to",
+    "condition",
+    "direction",
+    "excite",
+    "read",
+    "axis",
+    "title",
+)
 KEYS = (
     "title",
     "kind",
@@ -294,7 +305,7 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     overrides, cut_time = overrides_of_run(where, entry, declared)
     direction = _direction(where, entry)
     condition = str(entry.get("condition", ""))
-    signals = read_signals(file, kind, direction)
+    signals = read_signals(file, kind, direction, _columns(where, entry))
     name = file.name
     if (count := next(iter(signals.values())).size) < _LEAST_SAMPLES:
         raise InputError(
@@ -304,6 +315,17 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
         name, signals = _window(where, name, entry, signals)
     axis = _axis(where, entry, declared)
     return Run(name, overrides, signals, cut_time, condition, direction, axis)
+
+
+def _columns(where: str, entry: Mapping[str, Any]) -> str | None:
+    """Names and units of all columns of a file, where a run states them."""
+    stated = entry.get("columns")
+    if stated is not None and not (isinstance(stated, str) and stated.strip()):
+        raise InputError(
+            f"{where}: columns: {formatted(stated)} is given; names and units of all columns are "
+            'required, in one text such as "time [s], Fx [N], Fy [N]"'
+        )
+    return stated
 
 
 def overrides_of_run(

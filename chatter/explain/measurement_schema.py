@@ -14,6 +14,10 @@ _VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 #: own keys of a run -> what they are
 _OWN: dict[str, dict[str, Any]] = {
     "file": {"examples": ["run01.csv"], "description": "signals of the run"},
+    "columns": {
+        "examples": ["time [s], Fx [N], Fy [N]"],
+        "description": "names and units of all columns of the file, instead of its own",
+    },
     "from": {"examples": ["1.5 s"], "description": "part of the record: since its first sample"},
     "to": {"examples": ["4 s"], "description": "end of that part"},
     "condition": {"examples": ["idle"], "description": "of FRFs: idle, in the cut, ..."},

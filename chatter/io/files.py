@@ -51,6 +51,8 @@ def decoded(raw: bytes, path: Path) -> str:
     wide = _of_two_bytes(raw[:4096])
     if wide is not None:
         return raw.decode(wide, errors="replace")
+    # what a program reserved and did not fill
+    raw = raw.rstrip(b"\0")
     control = sum(raw[:4096].count(byte) for byte in range(32) if byte not in b"\t\n\r\f\x1a")
     if b"\0" in raw or control > 0.01 * min(len(raw), 4096):
         raise MeasurementError(f"{path}: is not text (binary content)")

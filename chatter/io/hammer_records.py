@@ -1,7 +1,7 @@
 """Hammer records from files: a file of one or several, a folder of files."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,8 @@ from chatter.description.arrays import Array
 from chatter.io.formats.format_list import formats_of
 from chatter.io.formats.units import Channel, channel_unit
 from chatter.io.stated_columns import read_signal_table, read_signal_tables
-from chatter.io.table import Column, Table
+from chatter.io.table import Column, Table, is_copy
+from chatter.io.trace_headings import with_units
 from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point
 from dynamics.frf.hammer.record import FEWEST_SAMPLES, HammerRecord
 
@@ -84,6 +85,7 @@ def read_hammer_records(
 def _record_of(table: Table, response: str | None, sampling_rate: float | None) -> HammerRecord:
     """Hammer record of a table."""
     path = table.path
+    table = replace(table, columns=with_units(table.columns))
     if not any(column.unit or column.content for column in table.columns):
         raise MeasurementError(
             f"{path}: no heading with names and units above the numbers; "
@@ -124,7 +126,8 @@ def is_hammer_record(path: Path, columns: str | None = None) -> bool:
     """Tell whether a file is a time record: it has a time, or a force and a motion, by units."""
     try:
         tables = read_signal_tables(path, columns)
-        held = {_channel(path, column)[0] for table in tables for column in table.columns}
+        columns = [one for table in tables for one in with_units(table.columns)]
+        held = {_channel(path, column)[0] for column in columns}
     except MeasurementError:
         return False
     return "time" in held or ("force" in held and bool(held & set(QUANTITY_OF_MOTION)))
@@ -219,9 +222,35 @@ def _only(
             f"{path}: no column is a {wanted}; the heading must be like: {_EXAMPLE}; or state "
             f'the columns, here {len(table.columns)}: --columns "{_EXAMPLE}"'
         )
-    if len(found) > 1:
-        raise MeasurementError(f"{path}: several columns are a {wanted}: {names}; name one")
+    if len(found) > 1 and not _hold_the_same(table, found, channels):
+        raise MeasurementError(
+            f"{path}: several columns are a {wanted}: {names}; leave the unit of all but one "
+            f'away: --columns "{_with_one(table, found)}"'
+        )
     return found[0]
+
+
+def _hold_the_same(
+    table: Table, found: list[int], channels: list[tuple[Channel | None, float]]
+) -> bool:
+    """Whether columns are copies of one, in one unit or in several."""
+    if len({channels[index][0] for index in found}) > 1:
+        return False
+    first, *others = (table.numbers(index) * channels[index][1] for index in found)
+    return all(is_copy(first, one) for one in others)
+
+
+def _with_one(table: Table, found: list[int]) -> str:
+    """Headings of all columns, those but the first of some without their unit."""
+    stated = []
+    for number, column in enumerate(table.columns, start=1):
+        left_out = number - 1 in found[1:]
+        name = column.name.replace(",", " ") or f"column {number}"
+        if left_out:
+            stated.append(f"{name} {number}")
+        else:
+            stated.append(f"{name} [{column.unit}]" if column.unit else name)
+    return ", ".join(stated)
 
 
 def _point(column: Column) -> Point:

@@ -89,7 +89,7 @@ def _plain(name: str) -> str:
 
 
 def _parted(path: Path, heading: str) -> tuple[str, str]:
-    """Name and unit; "Fx_N" and "Fx / N" are understood where both parts are known."""
+    """Name and unit; "Fx_N", "Fx / N" and "Fx in N" are understood where both parts are known."""
     match = _BRACKETS.fullmatch(heading.strip())
     if match is None or not match["name"].strip():
         match = _STROKE.fullmatch(heading)
@@ -99,7 +99,7 @@ def _parted(path: Path, heading: str) -> tuple[str, str]:
     name, unit = match["name"], (match["unit"] or match["other"] or "").strip()
     if unit or _plain(name) in _SPELLINGS:
         return name, unit
-    for parts in (name.rpartition("_"), name.rpartition("/")):
+    for parts in (name.rpartition("_"), name.rpartition("/"), name.rpartition(" in ")):
         stem, _, end = parts
         known = _SPELLINGS.get(_plain(stem))
         if known and _fits(DIMENSIONS[known], end.strip()):

@@ -11,7 +11,7 @@ from chatter.description.formatting import formatted
 from chatter.io.formats.format_list import format_of
 from chatter.io.headings import named
 from chatter.io.stated_columns import read_signal_table, signals_of
-from chatter.io.table import Column, Table
+from chatter.io.table import Column, Table, is_copy
 from dynamics.frf.container import Frf, MeasurementError
 
 Signals = dict[str, Array]
@@ -50,18 +50,56 @@ def read_signals(
 
 def _in_si(table: Table, kind: str) -> Signals:
     signals: Signals = {}
-    for column in table.columns:
-        if not column.heading.strip() and column.content is None:
-            continue  # the numbers of rows, as tables of pandas have them: nothing asks for them
-        name, factor = _name_and_factor(table.path, column, kind)
-        if name in signals:
-            raise InputError(f'{table.path}: there are two columns "{name}"')
+    first: dict[str, int] = {}
+    for index, name, factor in _named_columns(table, kind):
+        column = table.columns[index]
         if name in ("stable", "chatter"):
             stable = np.array([_verdict(table, column, k) for k in range(table.size)])
-            signals["stable"] = stable if name == "stable" else 1.0 - stable
+            name, values = "stable", stable if name == "stable" else 1.0 - stable
         else:
-            signals[name] = _numbers(table, column) * factor
+            values = _numbers(table, column) * factor
+        if name not in signals:
+            signals[name], first[name] = values, index
+        elif not is_copy(signals[name], values):
+            raise InputError(_which_of(table, name, first[name], index))
     return signals
+
+
+def _named_columns(table: Table, kind: str) -> list[tuple[int, str, float]]:
+    """Index, name and factor to SI of each column that has a name.
+
+    A column without one is that of the numbers of rows, as tables of pandas have it. One whose unit
+    is of another quantity than its name is left out where another column of the name has the right
+    one, as raw volts have beside the force.
+    """
+    found: list[tuple[int, str, float]] = []
+    wrong: list[tuple[str, InputError]] = []
+    for index, column in enumerate(table.columns):
+        if not column.heading.strip() and column.content is None:
+            continue
+        try:
+            found.append((index, *_name_and_factor(table.path, column, kind)))
+        except InputError as error:
+            wrong.append((column.name, error))
+    right = {table.columns[index].name for index, _, _ in found}
+    for name, problem in wrong:
+        if name not in right:
+            raise problem
+    return found
+
+
+def _which_of(table: Table, name: str, one: int, other: int) -> str:
+    """Say which columns have one name, and how to state which of them is meant."""
+    given = [column.heading.strip() or f"column {k}" for k, column in enumerate(table.columns, 1)]
+    unit = table.columns[other].unit
+    stated = list(given)
+    stated[other] = f"{table.columns[other].name} {other + 1}" + (f" [{unit}]" if unit else "")
+    return (
+        f'{table.path}: columns {one + 1} and {other + 1} are both "{name}" '
+        f"({given[one]}, {given[other]}), and differ; give one of them another name: in the "
+        f"heading, or all columns by --columns, or by columns of the run in measurement.toml, "
+        f'"{", ".join(stated)}"'
+    )
 
 
 def _name_and_factor(path: Path, column: Column, kind: str) -> tuple[str, float]:

@@ -17,6 +17,16 @@ from dynamics.frf.container import LARGEST, MeasurementError, Point
 if TYPE_CHECKING:
     from chatter.io.formats.units import Channel
 
+#: ends of names without brackets, as in "force_N" -> unit
+_UNITS_OF_NAMES = {
+    **{unit: unit for unit in ("s", "ms", "us", "Hz", "N", "kN", "lbf", "g", "m", "mm", "um")},
+    **{unit: unit for unit in ("Pa", "A", "W", "kW", "V", "rpm", "deg", "rad")},
+    "Nm": "N*m",
+    **dict.fromkeys(("ms2", "mps2", "m_s2"), "m/s^2"),
+}
+#: of the largest value, by which columns differ that hold the same
+_ROUNDING = 1e-4
+
 
 @dataclass(frozen=True, eq=False)
 class Column:
@@ -98,6 +108,12 @@ def table_of(path: Path, columns: Sequence[Column], what: str) -> Table:
     return Table(path, tuple(columns))
 
 
+def is_copy(one: Array, other: Array) -> bool:
+    """Whether two columns hold the same, but for the rounding of what was written."""
+    largest = float(np.nanmax(np.abs(one), initial=0.0))
+    return np.allclose(one, other, rtol=0.0, atol=_ROUNDING * largest, equal_nan=True)
+
+
 def is_number(cell: str) -> bool:
     """Tell whether a cell is a number, NaN and infinity included."""
     try:
@@ -120,3 +136,14 @@ def split_heading(heading: str) -> tuple[str, str]:
             if depth == 0:
                 return text[:index].strip(), text[index + 1 : -1].strip()
     return text, ""
+
+
+def heading_of_name(name: str) -> str:
+    """Name and unit: "force_N" is "force [N]", as brackets are not allowed in every program."""
+    if "[" in name or "(" in name:
+        return name
+    for end, unit in _UNITS_OF_NAMES.items():
+        stem = name.removesuffix(f"_{end}")
+        if stem and stem != name:
+            return f"{stem} [{unit}]"
+    return name

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
+from dataclasses import replace
 
 from chatter.description.units import MeasuredUnit, measured_unit
-from chatter.io.table import Table, split_heading
+from chatter.io.table import Column, Table, heading_of_name, split_heading
 
 #: name of a column of time
 TIME = re.compile(r"^(t|time|zeit|timestamp|temps|tempo|tiempo)\b")
@@ -30,6 +32,7 @@ _BEHIND_A_STROKE = re.compile(
     re.IGNORECASE,
 )
 _OF_STROKES = {"mm_min": "mm/min", "m_min": "m/min", "mm_s": "mm/s", "m_s": "m/s"}
+_IN_UNIT = re.compile(r"(?P<name>.+?)\s+in\s+(?P<unit>\S+)")
 #: of time, position, velocity, speed, force, current and torque
 _SYMBOLS = ("t", "s", "x", "v", "n", "F", "I", "i", "M")
 
@@ -55,6 +58,32 @@ def split_trace_heading(heading: str) -> tuple[str, str]:
     last = before.split()[-1]
     of_a_unit = last.lower() in _COUNTS or unit_of_trace(last) is not None
     return (name, "") if of_a_unit and before not in _SYMBOLS else (before, behind)
+
+
+def with_units(columns: Sequence[Column]) -> tuple[Column, ...]:
+    """Columns whose units may stand behind a slash or a word: ``"Zeit/ms"``, ``"Force in N"``.
+
+    Behind a stroke they are told where all columns have one: ``"time_s"`` and ``"force_N"``, while
+    ``"sensor_A"`` may be the first of two.
+    """
+    found = tuple(map(_with_unit, columns))
+    if any(one.unit or one.content for one in columns):
+        return found
+    stroked = tuple(replace(one, heading=heading_of_name(one.heading)) for one in found)
+    return stroked if all(one.unit for one in stroked) else found
+
+
+def _with_unit(column: Column) -> Column:
+    if column.content is not None or (column.unit and not column.name.endswith("/")):
+        return column
+    name, unit = split_trace_heading(column.heading)
+    if unit:
+        return replace(column, heading=f"{name} [{unit}]")
+    behind = _IN_UNIT.fullmatch(column.name)
+    known = None if behind is None else unit_of_trace(behind["unit"])
+    if known is not None and known.dimension:
+        return replace(column, heading=f"{behind['name']} [{behind['unit']}]")
+    return column
 
 
 def unit_of_trace(text: str) -> MeasuredUnit | None:

@@ -17,7 +17,7 @@ from chatter.description.units import dimension_of, measured_unit
 from chatter.detection.spectral.recording import Recording
 from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import Column, Table
-from chatter.io.trace_headings import split_trace_heading, unit_of_trace
+from chatter.io.trace_headings import unit_of_trace, with_units
 from dynamics.frf.container import MeasurementError
 
 #: quantity -> SI unit by whose dimension a column is recognised
@@ -103,7 +103,7 @@ def read_recording(
 def _recording(
     path: Path, table: Table, wanted: Sequence[str], sampling_rate: float | None
 ) -> Recording:
-    table = replace(table, columns=_of_own_names(list(map(_with_unit, table.columns))))
+    table = replace(table, columns=_of_own_names(with_units(table.columns)))
     numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
     time = _time(path, table, numbers, sampling_rate)
     pulses = next((one.name for one in table.columns if _is_tacho(one)), None)
@@ -130,14 +130,6 @@ def _recording(
     speed = _speed(table, numbers)
     once = pulses is not None and bool(_ONCE.fullmatch(pulses))
     return Recording(str(path), step, names, quantities, values, float(time[0]), tacho, speed, once)
-
-
-def _with_unit(column: Column) -> Column:
-    """Column whose unit may stand behind a slash: ``"Zeit/ms"``."""
-    if column.content is not None or column.unit:
-        return column
-    name, unit = split_trace_heading(column.heading)
-    return replace(column, heading=f"{name} [{unit}]") if unit else column
 
 
 def _of_own_names(columns: Sequence[Column]) -> tuple[Column, ...]:

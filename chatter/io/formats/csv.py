@@ -12,15 +12,16 @@ from chatter.io.files import read_lines
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.node_table import read_nodes
+from chatter.io.formats.number_marks import with_plain_numbers
 from chatter.io.formats.stated_rate import is_over_time_or_frequency, stated_step
-from chatter.io.table import Column, Table, is_number
+from chatter.io.table import Column, Table, is_number, split_heading
 from chatter.io.time_stamps import is_time_stamp, seconds_of
 from dynamics.frf.container import MeasurementError
 
 _COMMENT = ("#", "%", "//", "!")
+#: lines in which numbers may stand above a heading
+_LINES_ABOVE = 200
 _DATE = re.compile(r"[0-9]{1,4}[-./][0-9]{1,2}[-./][0-9]{1,4}")
-#: a unit alone: in brackets of one kind, or none
-_UNIT = re.compile(r"\[[^\[\]]*\]|\([^()]*\)|-")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
 #: a whole number with its thousands in groups, which may be one with a decimal comma
 _GROUPS = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")
@@ -41,12 +42,13 @@ def read_table(path: Path) -> Table:
 
 def table_of_lines(path: Path, lines: Sequence[str]) -> Table:
     """Table of the lines of a text, as `read_table`."""
-    first = _first_row(lines)
-    if first is None:
-        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
-    separator = _separator(lines[first])
-    headings, begin = _headings(lines[:first], separator, _cells(lines[first], separator))
-    if not headings:
+    lines = with_plain_numbers(path, lines)
+    for first in _first_rows(path, lines):
+        separator = _separator(lines[first])
+        headings, begin = _headings(lines[:first], separator, _cells(lines[first], separator))
+        if headings:
+            break
+    else:
         raise MeasurementError(
             f"{path}: no heading with names and units above the numbers; the first line must be "
             'like "frequency [Hz],real [m/N],imag [m/N]" or "time [s],force [N]"; or state them: '
@@ -56,9 +58,7 @@ def table_of_lines(path: Path, lines: Sequence[str]) -> Table:
     for index in range(begin, len(lines)):
         if not lines[index].strip() or _is_comment(lines[index]):
             continue
-        row = _cells(lines[index], separator)
-        if len(row) == len(headings) + 1 and not row[-1].strip():
-            row.pop()
+        row = _without_ends(_cells(lines[index], separator), len(headings))
         if len(row) != len(headings):
             if index < first:
                 continue
@@ -134,18 +134,20 @@ def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
     Lines above the first row are passed over. MeasurementError if there is no row, or one has
     another number of cells than there are headings.
     """
-    lines = read_lines(path)
-    first = _first_row(lines)
-    if first is None:
-        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
+    lines = with_plain_numbers(path, read_lines(path))
+    starts = list(_first_rows(path, lines))
+    fitting = (
+        index
+        for index in starts
+        if len(_row_of(lines[index], _separator(lines[index]), len(headings))) == len(headings)
+    )
+    first = next(fitting, starts[0])
     separator = _separator(lines[first])
     rows, numbers = [], []
     for index in range(first, len(lines)):
         if not lines[index].strip() or _is_comment(lines[index]):
             continue
-        row = _cells(lines[index].strip() if separator is None else lines[index], separator)
-        if len(row) == len(headings) + 1 and not row[-1].strip():
-            row.pop()
+        row = _row_of(lines[index], separator, len(headings))
         if len(row) != len(headings):
             raise MeasurementError(
                 f"{path}: line {index + 1} has {len(row)} columns where --columns states "
@@ -154,6 +156,35 @@ def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
         rows.append(row)
         numbers.append(index + 1)
     return _table(path, headings, rows, numbers, lines[:first])
+
+
+def _row_of(line: str, separator: str | None, count: int) -> list[str]:
+    """Cells of a row of so many columns."""
+    return _without_ends(_cells(line.strip() if separator is None else line, separator), count)
+
+
+def _without_ends(row: list[str], count: int) -> list[str]:
+    """Row without blank cells behind so many: separators at the end of a line."""
+    while len(row) > count and not row[-1].strip():
+        row.pop()
+    return row
+
+
+def _first_rows(path: Path, lines: Sequence[str]) -> Iterator[int]:
+    """First row of numbers, and further down each that has another number of cells.
+
+    Lines of numbers may stand above a heading. MeasurementError if there is no row.
+    """
+    first = _first_row(lines)
+    if first is None:
+        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
+    yield first
+    count = len(_cells(lines[first], _separator(lines[first])))
+    for index in range(first + 1, min(len(lines), first + _LINES_ABOVE)):
+        cells = _cells(lines[index], _separator(lines[index]))
+        if len(cells) != count and cells and is_number(cells[0]):
+            count = len(cells)
+            yield index
 
 
 def _is_comment(line: str) -> bool:
@@ -199,7 +230,7 @@ def _headings(
     lines: Sequence[str], separator: str | None, row: Sequence[str]
 ) -> tuple[list[str], int]:
     """Headings among the lines above the first row, and the line on which rows may begin."""
-    counts = (len(row), len(row) - (not row[-1].strip()))
+    counts = range(len(_without_ends(list(row), 1)), len(row) + 1)
     for are_comments in (False, True):
         found = [
             (cells, index)
@@ -220,10 +251,16 @@ def _headings(
 def _are_units(cells: Sequence[str]) -> bool:
     """Whether a line is the units of the names on the one before it: in brackets, or known."""
     if any("[" in cell or "(" in cell for cell in cells):
-        return all(_UNIT.fullmatch(cell) for cell in cells if cell)
+        return all(cell == "-" or _in_brackets(cell) is not None for cell in cells if cell)
     units = [cell for cell in cells if cell not in ("", "1", "-", "%")]
     known = sum(measured_unit(cell) is not None for cell in units)
     return 2 * known >= len(units) and not is_over_time_or_frequency(f"{cells[0]} [1]")
+
+
+def _in_brackets(cell: str) -> str | None:
+    """What stands in the brackets around a cell; None where they are not around all of it."""
+    name, unit = split_heading(f"in {cell}")
+    return unit if name == "in" and cell.endswith(("]", ")")) else None
 
 
 def _filled_from_above(
@@ -240,7 +277,9 @@ def _filled_from_above(
 
 
 def _with_unit(name: str, unit: str) -> str:
-    unit = unit.strip('" ') if "/" in unit else unit.strip('" ()[]')
+    unit = unit.strip('" ')
+    within = _in_brackets(unit)
+    unit = unit if within is None else within
     return f"{name.strip(chr(34) + ' ')} [{unit}]"
 
 

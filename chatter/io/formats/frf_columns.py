@@ -11,6 +11,7 @@ import numpy as np
 from chatter.description.arrays import Array, ComplexArray
 from chatter.io.formats.units import channel_unit, frf_unit
 from chatter.io.table import Column, Table
+from chatter.io.trace_headings import with_units
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
 
 T = TypeVar("T")
@@ -54,7 +55,7 @@ def frfs_of_table(table: Table) -> list[Frf]:
     MeasurementError if the columns are not such; the message names file, line or column, and the
     reason.
     """
-    path = table.path
+    path, table = table.path, replace(table, columns=with_units(table.columns))
     if not any(column.unit for column in table.columns):
         raise MeasurementError(
             f"{path}: names no units; FRFs need columns like: {_EXAMPLE}; of time records state "

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.io.files import LARGEST_FILE
-from chatter.io.table import Column, Table, table_of
+from chatter.io.table import Column, Table, heading_of_name, table_of
 from dynamics.frf.container import MeasurementError
 
 #: content that always has room, bytes, and how many times its file anything larger may be: noise
@@ -14,13 +14,6 @@ from dynamics.frf.container import MeasurementError
 _NEVER_A_BOMB, _MOST_TIMES = 64 * 1024**2, 100
 #: most columns that one array is taken for
 _MOST_COLUMNS = 256
-#: ends of names without brackets, as in "force_N" -> unit
-_UNITS_OF_NAMES = {
-    **{unit: unit for unit in ("s", "ms", "us", "Hz", "N", "kN", "lbf", "g", "m", "mm", "um")},
-    **{unit: unit for unit in ("Pa", "A", "W", "kW", "V", "rpm", "deg", "rad")},
-    "Nm": "N*m",
-    **dict.fromkeys(("ms2", "mps2", "m_s2"), "m/s^2"),
-}
 #: names of a single number, in lower case and without strokes -> Hz or s
 _RATES = ("fs", "samplingrate", "samplerate", "samplingfrequency")
 _STEPS = ("dt", "ts", "timestep", "samplingtime")
@@ -78,7 +71,7 @@ def _columns(path: Path, name: str, values: np.ndarray) -> list[Column]:
             "column for each channel"
         )
     if 1 in values.shape or values.ndim == 1:
-        return _parts(_heading(name), values.ravel())
+        return _parts(heading_of_name(name), values.ravel())
     rows = values if values.shape[0] > values.shape[1] else values.T
     if rows.shape[1] > _MOST_COLUMNS:
         raise MeasurementError(
@@ -97,17 +90,6 @@ def _parts(heading: str, values: np.ndarray) -> list[Column]:
         return [Column(heading, values)]
     unit = heading[heading.index("[") :] if "[" in heading else ""
     return [Column(f"real {unit}", values.real), Column(f"imag {unit}", values.imag)]
-
-
-def _heading(name: str) -> str:
-    """Name and unit: "force_N" is "force [N]", as brackets are not allowed in every program."""
-    if "[" in name or "(" in name:
-        return name
-    for end, unit in _UNITS_OF_NAMES.items():
-        stem = name.removesuffix(f"_{end}")
-        if stem and stem != name:
-            return f"{stem} [{unit}]"
-    return name
 
 
 def _step(arrays: Mapping[str, np.ndarray]) -> float | None:

@@ -20,7 +20,14 @@ from chatter.description.units import measured_unit
 from chatter.io.formats.format import Format
 from chatter.io.formats.records import Tables, of_file, only_record
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
-from chatter.io.formats.universal import Dataset, FileUnits, file_units, is_universal, read_datasets
+from chatter.io.formats.universal import (
+    Dataset,
+    FileUnits,
+    file_units,
+    is_universal,
+    read_datasets,
+    with_e_and_points,
+)
 from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, Frf, MeasurementError, Point, Quantity
 
@@ -272,7 +279,7 @@ def _parsed_heading(lines: list[str]) -> Heading:
 
 
 def _real(field: str) -> float:
-    return float(field.replace("D", "E").replace("d", "e"))
+    return float(with_e_and_points(field))
 
 
 def _axis(line: str) -> Axis:
@@ -307,7 +314,7 @@ def _values(
 
 
 def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> Array:
-    text = payload.decode("latin-1").replace("D", "E")
+    text = with_e_and_points(payload.decode("latin-1"))
     words = text.split()
     if len(words) != heading.count * columns:
         # fields of fixed width, whose signs leave no blanks between them

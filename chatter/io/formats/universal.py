@@ -53,7 +53,10 @@ def read_datasets(path: Path) -> Iterator[Dataset]:
     MeasurementError if the file cannot be read or a dataset is not closed by a line of -1
     (truncated file).
     """
-    content = read_content(path)
+    content = read_content(path).removeprefix(b"\xef\xbb\xbf")
+    if b"\n" not in content:
+        # lines of an old Macintosh
+        content = content.replace(b"\r", b"\n")
     position, line, order = 0, 1, 1
     while (opening := _DELIMITER.search(content, position)) is not None:
         if _DELIMITER.match(content, opening.end()) is not None:  # a stray line of -1
@@ -81,6 +84,14 @@ def read_datasets(path: Path) -> Iterator[Dataset]:
         order += 1
 
 
+def with_e_and_points(numbers: str) -> str:
+    """Numbers with E before their exponents, and points before their decimals.
+
+    Nothing stands between numbers of a universal file but blanks, so that a comma is decimal.
+    """
+    return numbers.replace("D", "E").replace("d", "e").replace(",", ".")
+
+
 def _closing(content: bytes, start: int, *, is_binary: bool) -> re.Match[bytes] | None:
     """Line of -1 that closes a dataset; behind binary numbers it may follow without a new line."""
     if not is_binary:
@@ -94,7 +105,7 @@ def file_units(dataset: Dataset, path: Path) -> FileUnits:
     MeasurementError if the factors are missing or not positive numbers.
     """
     lines = dataset.body.decode("latin-1").splitlines()
-    words = " ".join(lines[1:]).replace("D", "E").replace("d", "e").split()
+    words = with_e_and_points(" ".join(lines[1:])).split()
     try:
         length, force = float(words[0]), float(words[1])
     except (IndexError, ValueError):

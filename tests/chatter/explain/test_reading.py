@@ -196,8 +196,8 @@ def test_verdicts_in_words(tmp_path):
 
 def test_two_columns_of_one_name_are_refused(tmp_path):
     path = tmp_path / "run.csv"
-    path.write_text("time [s],Fx [N],fx (N)\n0,1,1\n1,2,2\n")
-    with pytest.raises(InputError, match='two columns "Fx"'):
+    path.write_text("time [s],Fx [N],fx (N)\n0,1,1\n1,2,3\n")
+    with pytest.raises(InputError, match='columns 2 and 3 are both "Fx"'):
         read_signals(path)
 
 

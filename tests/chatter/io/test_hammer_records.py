@@ -71,7 +71,7 @@ def test_several_responses_must_be_told_apart(tmp_path):
     rows = [[f"{i / RATE:.7f}", "1.0", f"{i}.0", f"{2 * i}.0"] for i in range(50)]
     head = "time [s],force [N],acceleration x [m/s^2],acceleration y [m/s^2]"
     path = write(tmp_path, table(head, columns=rows))
-    with pytest.raises(MeasurementError, match="'acceleration x', 'acceleration y'; name one"):
+    with pytest.raises(MeasurementError, match="'acceleration x', 'acceleration y'; leave the"):
         read_hammer_record(path)
     record = read_hammer_record(path, response="acceleration y")
     assert record.response[10] == 20.0
