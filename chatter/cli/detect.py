@@ -59,7 +59,8 @@ class DetectOptions:
         typer.Option(
             "--follow",
             help="Of a WAV or text file that is still being written: a line on stderr at every "
-            "change; the whole recording at its end. Needs --spindle-speed or --case.",
+            "change; the whole recording at its end. Needs --spindle-speed or --case where the "
+            "file has no tacho and no speed of the spindle.",
         ),
     ] = False
     sound_card: Annotated[

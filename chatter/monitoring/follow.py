@@ -39,8 +39,9 @@ def follow(
     path : path
         WAV, or a table in text that grows by lines.
     spindle_speed : str or float
-        As for `detect`; by default of the case. Right within 12 %; the lines correct what is more
-        than 1.5 % off.
+        As for `detect`; by default of the case, or of a measured speed in the file. Right within
+        12 %; the lines correct what is more than 1.5 % off. The pulses of a tacho in the file show
+        it at every moment.
     teeth, channels, sampling_rate
         As for `detect`.
     patience : float
@@ -58,10 +59,15 @@ def follow(
     if isinstance(case, (str, Path)):
         case = load(case)
     frequency = spindle_frequency(spindle_speed, case)
-    if frequency is None:
-        raise InputError("--follow needs --spindle-speed, such as 1656 rpm, or --case")
     teeth = teeth_of(teeth, case)
     file = growing_file(Path(path), channels, sampling_frequency(sampling_rate))
+    if frequency is None:
+        frequency = file.start.spindle_frequency
+    if frequency is None and file.start.tacho is None:
+        raise InputError(
+            "--follow needs --spindle-speed, such as 1656 rpm, or --case, where the file has no "
+            "tacho and no speed of the spindle"
+        )
     running = RunningDetection(file.start, frequency, teeth)
     grown = clock()
     while clock() - grown < patience:

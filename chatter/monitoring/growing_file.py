@@ -13,7 +13,7 @@ from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.detection.spectral.recording import Recording
 from chatter.io.formats.wav import full_scale
-from chatter.monitoring.recording_file import read_recording
+from chatter.monitoring.recording_file import is_tacho_name, read_recording
 
 _WAV = (b"RIFF", b"RF64")
 #: format tag and bits of a sample -> type of a number; 3 is floating point, 24 bits are the upper
@@ -99,11 +99,13 @@ class GrowingTable:
                 f"the columns {', '.join(self.start.channels)}"
             )
         self._columns = [heading.index(name) for name in self.start.channels]
+        if self.start.tacho is not None:
+            self._columns.append(next(k for k, name in enumerate(heading) if is_tacho_name(name)))
         self._at = 0
         self._rest = b""
 
     def new_samples(self) -> Array:
-        """Samples (n, k) of the lines that were completed since the last call."""
+        """Samples (n, k) of the lines that were completed since the last call, the tacho last."""
         with self._path.open("rb") as file:
             file.seek(self._at)
             raw = file.read()

@@ -145,7 +145,12 @@ def _of_own_names(columns: Sequence[Column]) -> tuple[Column, ...]:
 
 def _is_tacho(column: Column) -> bool:
     """Whether a column has the pulses of a tacho, and not the speed by it."""
-    return bool(_TACHO.fullmatch(column.name)) and not _is_of_turning(column)
+    return is_tacho_name(column.name) and not _is_of_turning(column)
+
+
+def is_tacho_name(name: str) -> bool:
+    """Whether a name is that of the pulses of a tacho, or of the speed by it."""
+    return bool(_TACHO.fullmatch(name))
 
 
 def _is_of_turning(column: Column) -> bool:

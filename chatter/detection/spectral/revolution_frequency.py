@@ -259,17 +259,11 @@ def from_tacho(
     One a revolution; several where the frequency that is given, Hz, says so. None of a signal that
     has no such pulses, or so many that the speed does not tell how many.
     """
-    times = _rising_edges(tacho, time_step, start)
-    if times.size < 3:
+    found = rates_of_pulses(tacho, time_step, start)
+    if found is None:
         return None
-    middle, frequency = 0.5 * (times[1:] + times[:-1]), 1.0 / np.diff(times)
-    usual = scipy.ndimage.median_filter(frequency, min(_NEARBY, frequency.size | 1), mode="nearest")
-    is_usual = np.abs(frequency / usual - 1.0) < _MISSING
-    steady = np.abs(usual[1:] / usual[:-1] - 1.0) < _STEADY
-    if is_usual.mean() < _MOST or (steady.size and steady.mean() < _MOST):
-        return None
-    middle, frequency = middle[is_usual], frequency[is_usual]
-    pulses = _pulses(float(frequency.mean()), given)
+    middle, frequency = found
+    pulses = pulses_of_revolution(float(frequency.mean()), given)
     frequency = frequency / pulses
     mean = 1.0 / float(np.mean(1.0 / frequency))
     if pulses > MOST_PULSES or mean > (FASTEST if given is not None else MOST_PULSES * FASTEST):
@@ -279,6 +273,22 @@ def from_tacho(
         for near in (np.abs(middle - t) <= 0.5 * frames.length for t in frames.time)
     ]
     return Revolution(np.array(over), _BY_TACHO, "tacho", mean, pulses=pulses)
+
+
+def rates_of_pulses(
+    tacho: Array, time_step: float, start: float = 0.0
+) -> tuple[Array, Array] | None:
+    """Times, s, and frequencies, Hz, between the pulses of a tacho; None of no such signal."""
+    times = _rising_edges(tacho, time_step, start)
+    if times.size < 3:
+        return None
+    middle, frequency = 0.5 * (times[1:] + times[:-1]), 1.0 / np.diff(times)
+    usual = scipy.ndimage.median_filter(frequency, min(_NEARBY, frequency.size | 1), mode="nearest")
+    is_usual = np.abs(frequency / usual - 1.0) < _MISSING
+    steady = np.abs(usual[1:] / usual[:-1] - 1.0) < _STEADY
+    if is_usual.mean() < _MOST or (steady.size and steady.mean() < _MOST):
+        return None
+    return middle[is_usual], frequency[is_usual]
 
 
 def _rising_edges(tacho: Array, time_step: float, start: float) -> Array:
@@ -293,7 +303,7 @@ def _rising_edges(tacho: Array, time_step: float, start: float) -> Array:
     return start + (edges - 1 + (level - before) / (after - before)) * time_step
 
 
-def _pulses(frequency: float, given: float | None) -> int:
+def pulses_of_revolution(frequency: float, given: float | None) -> int:
     """Pulses a revolution: those that a frequency that is given, Hz, has."""
     if given is None:
         return 1

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.errors import InputError
 from chatter.detection.spectral.activity import are_cutting, idle_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
 from chatter.detection.spectral.frame_evidence import Evidence
@@ -23,7 +24,7 @@ from chatter.detection.spectral.line_of_cut import (
     line_of,
 )
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.revolution_frequency import VARIATION, Revolution
+from chatter.detection.spectral.revolution_frequency import VARIATION, Revolution, rates_of_pulses
 from chatter.detection.spectral.running_speed import RunningSpeed
 from chatter.detection.spectral.segments import (
     BEGINS,
@@ -35,6 +36,7 @@ from chatter.detection.spectral.segments import (
     STABLE,
 )
 from chatter.detection.spectral.spectra import Frames, above_floor, added_up, spectrum_of
+from chatter.detection.spectral.speed_by_tacho import SpeedByTacho
 
 Array = NDArray[np.float64]
 
@@ -82,6 +84,7 @@ class _Window(NamedTuple):
     spectra: Array  # (k, b) power of the channels
     line: ChatterLine
     level: float  # dB
+    speed: float  # Hz, of the spindle
 
 
 class _Held(NamedTuple):
@@ -99,22 +102,25 @@ class RunningDetection:
     ----------
     start : Recording
         Of any length: its channels, its step of time and what they are of. Its samples are not
-        taken.
-    spindle_frequency : float
-        Hz, right within 12 %: the lines correct it.
+        taken. Where it has a tacho, so have the samples, as their last column.
+    spindle_frequency : float or None
+        Hz, right within 12 %: the lines correct it. Beside a tacho, whose pulses show the speed, it
+        tells how many of them are a revolution, and None is one unless the lines show more.
     teeth : int or None
     """
 
-    def __init__(self, start: Recording, spindle_frequency: float, teeth: int | None) -> None:
+    def __init__(
+        self, start: Recording, spindle_frequency: float | None, teeth: int | None
+    ) -> None:
         self._start = start
-        self._stated = spindle_frequency
-        self._speed = RunningSpeed(spindle_frequency, teeth or 1)
+        self._speed = _speed_of(start, spindle_frequency, teeth)
         self._teeth = teeth
+        spindle_frequency = self._speed.mean
         hop = max(1.0 / spindle_frequency, _SHORTEST_HOP)
         self._hop = max(round(hop / start.time_step), 1)
         length = max(_REVOLUTIONS / spindle_frequency, _SHORTEST)
         self._window = round(length / start.time_step)
-        self._samples = np.empty((0, len(start.channels)))
+        self._samples = np.empty((0, len(start.channels) + (start.tacho is not None)))
         self._taken = 0
         self._quarter = max(round(self._window / (self._hop * _QUARTER)), 1)
         self._history: deque[_Window] = deque(maxlen=_HISTORY)
@@ -134,6 +140,8 @@ class RunningDetection:
         self._early_every = max(_EARLY_EVERY, math.ceil(_EARLY_SHORTEST / quarter))
         #: chatter that windows showed together, and that holds
         self._held: _Held | None = None
+        #: whether windows together could not be judged the last time
+        self._is_doubtful = False
 
     @property
     def judges_together(self) -> bool:
@@ -164,11 +172,13 @@ class RunningDetection:
             self._held = None
         elif verdict != CHATTER and self._held is not None:
             verdict, (frequency, share, _) = CHATTER, self._held
+        elif verdict == STABLE and self._is_doubtful:
+            verdict = NOT_JUDGED
         if verdict != CHATTER:
             frequency = math.nan
         return Observation(
             time, verdict, frequency, share, self._speed.current,
-            self._speed_is_refuted, self._speed.mean != self._stated,
+            self._speed_is_refuted, self._speed.is_corrected,
         )  # fmt: skip
 
     def _verdict_of(self, window: _Window) -> str:
@@ -209,9 +219,15 @@ class RunningDetection:
     def _window_of(self, values: Array) -> _Window:
         start = self._start
         begin = start.start + self._taken * start.time_step
+        tacho = None
+        if start.tacho is not None:
+            values, tacho = values[:, :-1], values[:, -1]
         recording = Recording(
-            start.name, start.time_step, start.channels, start.quantities, values, begin
-        )
+            start.name, start.time_step, start.channels, start.quantities, values, begin, tacho,
+            once_per_revolution=start.once_per_revolution,
+        )  # fmt: skip
+        if isinstance(self._speed, SpeedByTacho):
+            self._speed.take_pulses(recording)
         frequency, spectra = spectrum_of(recording)
         power = added_up(spectra[:, None])
         above = above_floor(power, frequency, recording.duration)
@@ -222,7 +238,7 @@ class RunningDetection:
         if is_kept and self._speed.take(frames, level, self._idle_level):
             self._look_again()
         line = strongest_line(power[0], above[0], frequency, self._comb(frames))
-        return _Window(recording, frames, spectra, line, level)
+        return _Window(recording, frames, spectra, line, level, self._speed.current)
 
     def _comb(self, frames: Frames) -> Comb:
         speed = self._speed.current
@@ -239,9 +255,9 @@ class RunningDetection:
         """Judge every so many windows together, beside the verdicts: the speed, and chatter."""
         if self._together is not None and self._together.done():
             found = self._together.result()
-            self._speed_is_refuted = found.speed_is_refuted
-            if abs(found.spindle_frequency / self._speed.mean - 1.0) > VARIATION:
-                self._speed.go_on_with(found.spindle_frequency)
+            self._speed_is_refuted, self._is_doubtful = found.speed_is_refuted, found.is_doubtful
+            is_other = abs(found.spindle_frequency / self._speed.mean - 1.0) > VARIATION
+            if is_other and self._speed.go_on_with(found.spindle_frequency):
                 self._look_again()
             if not math.isnan(found.chatter_frequency):
                 power = self._power_near(found.chatter_frequency)
@@ -254,7 +270,7 @@ class RunningDetection:
         if self._together is None and (self._count // self._quarter + 1) % every == 0:
             joined = _joined([one.recording for one in self._history])
             self._together = self._background.submit(
-                judged_together, joined, self._speed.mean, self._teeth
+                judged_together, joined, self._speed.given, self._teeth
             )
 
     def _power_near(self, frequency: float) -> float:
@@ -302,9 +318,9 @@ class RunningDetection:
             window.frames.length,
         )
         revolution = Revolution(
-            np.full(len(cut), self._speed.current),
+            self._speed.over([one.speed for one in cut]),
             _UNCERTAINTY,
-            "given, refined by the spectrum" if self._speed.is_confirmed else "given",
+            self._speed.source,
             self._speed.mean,
         )
         at_rest = np.median(power[: len(rest)], axis=0) if rest else None
@@ -350,12 +366,33 @@ class RunningDetection:
 
 def _joined(recordings: list[Recording]) -> Recording:
     """One recording of some that overlap."""
-    values = [
-        one.values[: round((following.start - one.start) / one.time_step)]
+    last = recordings[-1]
+    new = [
+        slice(0, round((following.start - one.start) / one.time_step))
         for one, following in itertools.pairwise(recordings)
     ]
-    values = np.concatenate([*values, recordings[-1].values])
-    return replace(recordings[-1], values=values, start=recordings[0].start)
+    parts = [*zip(recordings[:-1], new, strict=True), (last, slice(None))]
+    values = np.concatenate([one.values[rows] for one, rows in parts])
+    tacho = None
+    if last.tacho is not None:
+        tacho = np.concatenate([one.tacho[rows] for one, rows in parts])
+    return replace(last, values=values, start=recordings[0].start, tacho=tacho)
+
+
+def _speed_of(
+    start: Recording, stated: float | None, teeth: int | None
+) -> RunningSpeed | SpeedByTacho:
+    """Speed as the tacho of a recording has it; as stated, Hz, where it has no pulses."""
+    pulses = None if start.tacho is None else rates_of_pulses(start.tacho, start.time_step)
+    if pulses is not None:
+        first = float(1.0 / np.mean(1.0 / pulses[1]))
+        return SpeedByTacho(first, stated, once_per_revolution=start.once_per_revolution)
+    if stated is None:
+        raise InputError(
+            f"{start.name}: what is written so far has no pulses of a tacho; state the speed of "
+            "the spindle"
+        )
+    return RunningSpeed(stated, teeth or 1)
 
 
 def _level(values: Array) -> float:

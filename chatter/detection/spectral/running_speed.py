@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -59,14 +59,34 @@ class RunningSpeed:
         self.is_confirmed = False
 
     @property
+    def given(self) -> float:
+        """Speed, Hz, to judge windows together by."""
+        return self.mean
+
+    @property
+    def is_corrected(self) -> bool:
+        """Whether the lines showed another mean than the stated one."""
+        return self.mean != self._stated
+
+    @property
+    def source(self) -> str:
+        """Where the speed is from, as `Revolution` has it."""
+        return "given, refined by the spectrum" if self.is_confirmed else "given"
+
+    def over(self, speeds: Sequence[float]) -> Array:
+        """Speeds of windows, Hz: the present one, by which their lines are told."""
+        return np.full(len(speeds), self.current)
+
+    @property
     def is_contradicted(self) -> bool:
         """Whether the lines of the last window but no others show another speed far better."""
         return not math.isnan(self._other)
 
-    def go_on_with(self, frequency: float) -> None:
-        """Take a speed, Hz, for the mean."""
+    def go_on_with(self, frequency: float) -> bool:
+        """Take a speed, Hz, for the mean; true."""
         self.mean = self.current = frequency
         self._other = math.nan
+        return True
 
     def take(self, frames: Frames, level: float, idle_level: Callable[[], float]) -> bool:
         """Take a window of a level, dB; whether its lines show another mean, which holds then."""

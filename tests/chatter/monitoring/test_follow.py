@@ -12,6 +12,7 @@ import scipy.io.wavfile
 from chatter.description.errors import InputError
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.running_detection import RunningDetection
+from chatter.monitoring.detect import detect
 from chatter.monitoring.follow import follow
 from chatter.monitoring.growing_file import growing_file
 from tests.chatter.detection.made_recordings import (
@@ -21,6 +22,7 @@ from tests.chatter.detection.made_recordings import (
     during,
     forced_cut,
     noise,
+    ringing,
 )
 from tests.command_line import chatter_command
 
@@ -35,9 +37,12 @@ def made(begin, seconds=4.0):
     return 0.05 * (values + 4.0 * during(time, begin, seconds) * chatter_part)
 
 
+def recorded(values):
+    return Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:, None])
+
+
 def running(values, revolution=REVOLUTION):
-    start = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:256, None])
-    return RunningDetection(start, revolution, TEETH)
+    return RunningDetection(recorded(values[:256]), revolution, TEETH)
 
 
 def test_a_verdict_every_revolution_and_chatter_within_the_window():
@@ -122,6 +127,18 @@ def test_a_stable_cut_after_chatter_is_not_idle():
     observed = taken_in_time(running(values), values[:, None])
     assert {one.verdict for one in observed if 3.2 < one.time < 3.9} == {"chatter"}
     assert {one.verdict for one in observed if one.time > 5.5} == {"stable"}
+
+
+def test_what_cannot_be_judged_together_is_not_called_stable():
+    """A mode that noise shakes, as large as the cut: the whole of it is not judged."""
+    random, time = np.random.default_rng(1), clock(4.0)
+    values = forced_cut(random, time, REVOLUTION, TEETH) + noise(random, time)
+    values += 1.2 * ringing(random, time, FREQUENCY, 0.004)
+    observed = taken_in_time(running(values), values[:, None])
+    assert detect(recorded(values), 2.0 * np.pi * REVOLUTION, TEETH).segments[-1].verdict == (
+        "not judged"
+    )
+    assert {one.verdict for one in observed if one.time > 3.0} == {"not judged"}
 
 
 def test_the_right_speed_is_not_refuted():
