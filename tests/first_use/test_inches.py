@@ -6,6 +6,7 @@ The numbers expected are what the case states, and conversions by definition: 25
 
 import json
 import math
+import re
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -281,6 +282,16 @@ def test_the_best_cut_is_in_inches(optimum):
     assert f"{best.power / 745.69987:.3g} hp" in told[1]
     assert f"surface error {best.surface_error / 2.54e-5:.3g} mil" in told[1]
     assert "N m" not in told[1]
+
+
+def test_what_no_cut_keeps_is_told_in_horsepower(case):
+    searched = {
+        "optimum.speeds": {"from": "2600 rpm", "to": "2700 rpm"},
+        "optimum.depths": {"from": "0.02 in", "to": "0.03 in"},
+        "optimum.max_power": "0.027 hp",
+    }
+    why = chatter.optimum(case.patch(searched)).why_nothing
+    assert re.search(r"max_power is held nowhere \(smallest .*: 0\.0\d+ hp\)", why)
 
 
 def test_the_picture_of_the_best_cut_is_in_inches(optimum):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from chatter.description.unit_system import units_of
 from chatter.studies.optimisation.limits import LIMITED
 from chatter.studies.optimisation.speed_depth_slice import STABILITY, SpeedDepthSlice
 
@@ -61,7 +62,8 @@ def _smallest(grid_slices: Sequence[SpeedDepthSlice], name: str) -> str:
     found = [np.abs(getattr(grid_slice.cuts, LIMITED[name])) for grid_slice in grid_slices]
     values = np.stack(found)
     known = values[np.isfinite(values)]
-    return f"{known.min() * factor:.4g} {unit}" if known.size else ""
+    read = units_of(grid_slices[0].case).instead_of(unit)
+    return read.text(known.min() * factor) if known.size else ""
 
 
 def why_nothing(found: Sequence[Exclusion]) -> str:

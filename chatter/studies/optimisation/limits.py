@@ -10,6 +10,7 @@ from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.sections.optimisation import Feeds, Optimum, RadialDepths
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
@@ -132,8 +133,9 @@ def _lasting(case: Case, section: Optimum, first: float, last: float) -> float:
     if highest <= first * _LEAST_RANGE:
         raise InputError(
             f"{case.name}: optimum.min_tool_life: an edge that lasts "
-            f"{section.min_tool_life / 60.0:.3g} min cuts at {60.0 * fastest:.4g} m/min at the "
-            f"most, {rpm(highest):.4g} rpm; the search begins at {rpm(first):.4g} rpm"
+            f"{section.min_tool_life / 60.0:.3g} min cuts at "
+            f"{units_of(case).cutting_speed.text(fastest)} at the most, {rpm(highest):.4g} rpm; "
+            f"the search begins at {rpm(first):.4g} rpm"
         )
     return min(last, highest)
 

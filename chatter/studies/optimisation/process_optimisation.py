@@ -11,6 +11,7 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.questioned import question_of_flutes
+from chatter.description.unit_system import units_of
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import exclusions
 from chatter.studies.optimisation.grid_search import (
@@ -222,7 +223,7 @@ def _notes(case: Case, limits: Limits, drawn: Samples | None) -> list[str]:
         fastest = case.tool_life.cutting_speed_for(section.min_tool_life)
         notes.append(
             f"optimum.min_tool_life: an edge lasts {section.min_tool_life / 60.0:.3g} min up to "
-            f"{60.0 * fastest:.4g} m/min; no higher speed is searched"
+            f"{units_of(case).cutting_speed.text(fastest)}; no higher speed is searched"
         )
     modes = case.structure.mode if case.structure else ()
     if any(mode.frequency_slope for mode in modes):
