@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from chatter.io.result_files import finite_or_none
 from chatter.studies.frf_units import frf_unit
 
 if TYPE_CHECKING:
+    from chatter.simulation.finish import Finish
     from chatter.simulation.result import SimulationResult
     from chatter.studies.model import Model
 
@@ -179,27 +180,41 @@ def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del method, only
     result = _simulated(case)
     summary = result.summary()
-    walls = result.finish.walls
-    if not walls:
+    finish = result.finish
+    if not finish.walls and finish.floor is None:
         raise InputError(
-            f"{case.name}: no wall is evaluated: {'; '.join(result.finish.notes) or 'none is left'}"
+            f"{case.name}: no surface is evaluated: {'; '.join(finish.notes) or 'none is left'}"
         )
-    curves = []
-    for wall in walls:
-        profile = wall.profiles
-        advance = case.cut.feed_per_tooth * case.tool.teeth
-        kept = profile.x - profile.x[0] <= _PROFILE_REVOLUTIONS * advance
-        label = f"wall {profile.side} near the tip [µm]"
-        x, y = (profile.x[kept] - profile.x[0]) * 1e3, profile.deviation[0][kept] * 1e6
-        curves.append(Curve(label, "", _numbers(x), _numbers(y), "along the feed [mm]"))
-    rough = summary["roughness"]["wall"]
+    rough, place = summary["roughness"], summary["surface_location"]
     numbers = {
         "surface_location_error_um": summary["surface_location_error_um"],
-        "Ra_um": rough["Ra_um"],
-        "Rz_um": rough["Rz_um"],
+        "Ra_um": rough["wall"]["Ra_um"],
+        "Rz_um": rough["wall"]["Rz_um"],
+        "floor_error_um": place["floor_um"],
+        "floor_Ra_um": rough["floor"]["Ra_um"],
+        "floor_Rz_um": rough["floor"]["Rz_um"],
         "chatter_frequency_Hz": summary["chatter_frequency_Hz"],
     }
-    return Outcome(numbers, {"verdict": summary["verdict"]}, tuple(curves))
+    return Outcome(numbers, {"verdict": summary["verdict"]}, tuple(_profiles(case, finish)))
+
+
+def _profiles(case: Case, finish: Finish) -> Iterator[Curve]:
+    """Profiles of the surface along the feed, over a few revolutions."""
+    of_surface = {
+        f"wall {wall.profiles.side} near the tip [µm]": (
+            wall.profiles.x,
+            wall.profiles.deviation[0],
+        )
+        for wall in finish.walls
+    }
+    if finish.floor is not None and not finish.floor.profile.sharp:
+        of_surface["floor [µm]"] = (finish.floor.profile.x, finish.floor.profile.height)
+    drawn = _PROFILE_REVOLUTIONS * case.cut.feed_per_tooth * case.tool.teeth
+    for label, (along, height) in of_surface.items():
+        x = along - along[0]
+        kept = x <= drawn
+        y = _numbers(height[kept] * 1e6)
+        yield Curve(label, "", _numbers(x[kept] * 1e3), y, "along the feed [mm]")
 
 
 def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
@@ -320,6 +335,9 @@ _MEASURES = (
             "surface_location_error_um": Quantity("surface location error", "um"),
             "Ra_um": Quantity("roughness Ra", "um", read_as="roughness"),
             "Rz_um": Quantity("roughness Rz", "um", read_as="roughness"),
+            "floor_error_um": Quantity("depth error of the floor", "um"),
+            "floor_Ra_um": Quantity("roughness Ra of the floor", "um", read_as="roughness"),
+            "floor_Rz_um": Quantity("roughness Rz of the floor", "um", read_as="roughness"),
             "chatter_frequency_Hz": _CHATTER_FREQUENCY,
         },
         _surface,

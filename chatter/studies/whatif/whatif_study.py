@@ -165,10 +165,9 @@ def whatif(
     variations = _variations(model, vary, count)
     layout = chosen_layout(variations, tornado)
     measure = measure_of(result, model)
-    key = quantity or next(iter(measure.quantities))
-    if key not in measure.quantities:
+    if quantity and quantity not in measure.quantities:
         known = ", ".join(measure.quantities)
-        raise InputError(f'--quantity "{key}" is not known; {measure.name} has {known}')
+        raise InputError(f'--quantity "{quantity}" is not known; {measure.name} has {known}')
     points = points_of(variations, layout)
     models = _models_of(model, points)
     evaluate = partial(_record, measure.name, method, tuple(only))
@@ -179,7 +178,16 @@ def whatif(
         messages, failure = records[0]["input_errors"], records[0]["failure"]
         raise InputError(messages) if messages else RunError(failure)
     outcomes = tuple(_outcome(record) for record in records)
+    key = quantity or _first_known(measure, outcomes)
     return WhatIf(model, variations, layout, measure, key, points, outcomes)
+
+
+def _first_known(measure: Measure, outcomes: Sequence[Outcome]) -> str:
+    """First quantity that some point has, or that lies beyond what was searched."""
+    for key, quantity in measure.quantities.items():
+        if quantity.beyond or any(one.numbers.get(key) is not None for one in outcomes):
+            return key
+    return next(iter(measure.quantities))
 
 
 def _models_of(model: Model, points: Sequence[DesignPoint]) -> list[Model]:

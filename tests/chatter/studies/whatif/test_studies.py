@@ -163,6 +163,30 @@ def test_surface_of_a_rigid_tool_has_the_error_of_its_runout(case):
     assert study.outcomes[0].curves
 
 
+def test_surface_of_a_ball_that_leans_is_its_floor():
+    """It leaves no wall; feed marks of a circle are f^2 / (8 R) high."""
+    ball = chatter.Case.from_dict(
+        {
+            "tool": {"kind": "ball", "teeth": 2, "diameter": "6 mm"},
+            "material": {"law": "linear", "Ktc": "2000 MPa", "Krc": "800 MPa"},
+            "cut": {
+                "mode": "down", "spindle_speed": "18000 rpm", "feed_per_tooth": "0.1 mm",
+                "axial_depth": "0.2 mm", "stepover": "0.2 mm", "lead": "10 deg",
+            },
+            "simulation": {"revolutions": 20},
+        },
+        "leaning ball",
+    )  # fmt: skip
+    study = whatif(ball, {"cut.feed_per_tooth": ["0.1 mm", "0.2 mm"]}, "surface")
+    assert study.values("surface_location_error_um") == [None, None]
+    assert study.values("floor_Rz_um") == pytest.approx(
+        [1e3 * f**2 / 24.0 for f in (0.1, 0.2)], 0.06
+    )
+    assert study.quantity == "floor_error_um"
+    assert all("none" not in sentence for sentence in study.sentences())
+    assert [one.panel for one in study.outcomes[0].curves] == ["floor [µm]"]
+
+
 def test_frf_of_a_machine_follows_stiffness_and_mass(machine_file):
     machine = load_model(machine_file)
     study = whatif(machine, {"connector.column.stiffness.x": ["20 N/um", "80 N/um"]})
