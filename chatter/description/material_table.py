@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from cutting.material.table import MATERIALS
 _TEXTS = ("source", "iso_group", "condition", "validity", "assumption")
 _RANGE = "chip_thickness"
 _GRADES = "examples"
+_WORD = re.compile(r"[\w.%+-]+")
 _ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
 
 
@@ -105,11 +107,16 @@ def name_of_row(
 def _row_in_condition(
     name: str, rows: Mapping[str, MaterialRow], among: list[str], condition: str
 ) -> str:
-    """The one of some rows whose condition or name has all words of a condition."""
+    """The one of some rows whose condition or name has all words of a condition.
+
+    Where several have them, the one that has them as words: "VDI 2" is not in "VDI 3, 0.25 % C".
+    """
     words = condition.lower().replace(",", " ").split()
     found = [one for one in among if words and all(word in rows[one].state(one) for word in words)]
-    if len(found) == 1:
-        return found[0]
+    whole = [one for one in found if set(words) <= set(_WORD.findall(rows[one].state(one)))]
+    for chosen in (found, whole):
+        if len(chosen) == 1:
+            return chosen[0]
     if not among:
         return name_of_row(name, rows)
     several = "chooses none" if not found else f"leaves {len(found)}"

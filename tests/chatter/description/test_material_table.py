@@ -174,7 +174,12 @@ def test_a_word_of_many_grades_is_none(word):
 
 @pytest.mark.parametrize(
     ("condition", "group"),
-    [("annealed", "(VDI 2)"), ("850 MPa", "(VDI 3)"), ("Quenched and tempered", "(VDI 3)")],
+    [
+        ("annealed", "(VDI 2)"),
+        ("850 MPa", "(VDI 3)"),
+        ("Quenched and tempered", "(VDI 3)"),
+        ("VDI 2", "(VDI 2)"),
+    ],
 )
 def test_a_condition_chooses_among_the_rows_of_a_grade(condition, group):
     """1.0503 annealed or tempered had to be named by the whole name of its row."""
