@@ -19,6 +19,9 @@ from chatter.stability.crossings import find_crossings
 
 #: of the columns of the coarse grid every so many depths are evaluated first, a power of two
 _DEPTH_STRIDE = 4
+#: parts of the depths of a column that are evaluated one after the other, and the growth rate in a
+#: period from which on it is far above zero
+_PARTS, _FAR_ABOVE = 16, 5.0
 #: growth rate of a peak or valley that the columns beside may have above or below zero
 _NEARLY_ZERO = 0.2
 #: share of the time that the coarse grid takes, about
@@ -80,14 +83,14 @@ def _screen(
     """Fill in columns: all depths, but for some of those that lie deep in what is unstable.
 
     Between two of every few depths that are unstable, with a growth rate well above what it changes
-    by from the one to the other, growth rate is taken to follow the line. `screened` is called with
-    the share that is done. Returns what has been seen.
+    by from the one to the other, growth rate is taken to follow the line; so it is below depths
+    from which on it only rises far above. `screened` is called with the share that is done. Returns
+    what has been seen.
     """
     last = depths.size - 1
     step = _DEPTH_STRIDE
-    seen = np.zeros((columns.size, depths.size), dtype=bool)
-    seen[:, ::step] = seen[:, last] = True
-    _evaluate(values, columns, seen, depths, growth_rate)
+    coarse = np.unique(np.append(np.arange(0, last, step), last))
+    seen = _descend(values, columns, coarse, depths, growth_rate)
     screened(1.0 / step)
     while step > 1:
         step //= 2
@@ -105,6 +108,36 @@ def _screen(
         # every step-th of all depths is known
         screened(1.0 / step)
     seen |= _widen(values, columns, seen, depths, growth_rate)
+    return seen
+
+
+def _descend(
+    values: Array,
+    columns: IntegerArray,
+    coarse: IntegerArray,
+    depths: Array,
+    growth_rate: GrowthRate,
+) -> BooleanArray:
+    """Fill in some depths of columns, part by part from the shallowest on; returns what is seen.
+
+    A column ends with a part over which the growth rate rises, far above zero: a cut many times
+    deeper than its limit takes longest, and tells nothing.
+    """
+    seen = np.zeros((columns.size, depths.size), dtype=bool)
+    on = np.arange(columns.size)
+    parts = np.array_split(coarse, min(_PARTS, coarse.size))
+    for number, part in enumerate(parts):
+        wanted = np.zeros_like(seen)
+        wanted[np.ix_(on, part)] = True
+        _evaluate(values, columns, wanted, depths, growth_rate)
+        seen |= wanted
+        first, last = values[columns[on], part[0]], values[columns[on], part[-1]]
+        ended = (first > _FAR_ABOVE) & (last > first)
+        rest = np.concatenate([[part[-1]], *parts[number + 1 :]])[1:]
+        slope = (last - first)[ended] / (depths[part[-1]] - depths[part[0]])
+        beyond = depths[rest] - depths[part[-1]]
+        values[np.ix_(columns[on[ended]], rest)] = last[ended][:, None] + np.outer(slope, beyond)
+        on = on[~ended]
     return seen
 
 

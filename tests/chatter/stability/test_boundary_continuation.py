@@ -75,3 +75,27 @@ def test_progress_goes_up_and_begins_before_the_screening_ends():
     # the refinement of limits comes after the last level
     assert 0.8 * SPEEDS.size < done[-1] < SPEEDS.size
     assert {total for _, total in reported} == {SPEEDS.size}
+
+
+@pytest.mark.parametrize(("steep", "deepest"), [(60.0, 0.4), (6.0, 1.0)])
+def test_a_column_ends_far_beyond_its_limit(steep, deepest):
+    """A serrated edge took minutes for depths at which vibration grew 1e16 times a turn."""
+    asked = []
+
+    def growth(index, depth):
+        asked.extend(depth)
+        return steep * (depth - 0.1)
+
+    depths = np.linspace(0.0, 1.0, 321)[1:]
+    found = continued_crossings(1, depths, growth, 1e-4, 1)
+    assert found[0] == pytest.approx([0.1], rel=1e-4)
+    assert max(asked) <= deepest
+
+
+def test_an_island_below_what_grows_slowly_is_found():
+    def growth(index, depth):
+        return 4.0 * np.sin(9.0 * depth - 0.9)
+
+    depths = np.linspace(0.0, 1.0, 321)[1:]
+    found = continued_crossings(1, depths, growth, 1e-5, 1)
+    assert found[0] == pytest.approx((0.9 + np.pi * np.arange(3)) / 9.0, rel=1e-4)

@@ -28,6 +28,8 @@ from chatter.stability.stability_method import Multiplier
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
+#: multiplier from which on the cut chatters beyond doubt
+_BEYOND_DOUBT = 1e3
 #: of a limit, relative to its depth
 DEPTH_TOLERANCE = 1e-6
 #: vibrations in a period of the tool, all of which a delay may hold, and in one of a varying speed
@@ -137,7 +139,8 @@ def converged_multiplier(
 ) -> Multiplier:
     """Dominant multiplier at one point, refined until two resolutions agree.
 
-    Speed in rad/s, depth in m; the tolerance is on |mu|, relative to max(1, |mu|).
+    Speed in rad/s, depth in m; the tolerance is on |mu|, relative to max(1, |mu|). Where both are
+    far beyond 1 the second is taken, whatever its error.
     """
     point = np.array([speed]), np.array([depth])
     cut = cut_at(*RESOLUTION)
@@ -146,8 +149,9 @@ def converged_multiplier(
         cut = cut_at(*finer)
         better = complex(multipliers(cut, *point)[0])
         error = abs(abs(better) - abs(value))
+        beyond = min(abs(value), abs(better)) > _BEYOND_DOUBT
         value = better
-        if error <= tolerance * max(1.0, abs(value)):
+        if error <= tolerance * max(1.0, abs(value)) or beyond:
             break
     steps = int(drivers.points_of_periods(cut, point[0], depth)[0])
     return Multiplier(value, steps, float(error))
