@@ -15,7 +15,7 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import distinct_from, to_digits
 from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
-from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
+from chatter.description.questioned import question_of_flutes, question_of_growth
 from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
@@ -55,6 +55,7 @@ from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier, StabilityMethod
 from chatter.stability.steady_flank import about_steady_motion
+from cutting.edge_segments.segments import period_angle
 from cutting.engagement.immersion import slice_engagement
 
 if TYPE_CHECKING:
@@ -348,6 +349,11 @@ def _hertz(frequency: float) -> str:
     return f"{frequency:.1f} Hz" if np.isfinite(frequency) else "none"
 
 
+def _teeth_of_period(model: MillingModel) -> float:
+    """Teeth that pass while the tool turns to where it repeats itself."""
+    return model.teeth * period_angle(model.cutter) / (2.0 * np.pi)
+
+
 @takes_case_or_path
 def check(
     case: Case, method: str | None = None, progress: Progress = no_progress
@@ -405,7 +411,7 @@ def check(
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
-            *question_of_spectral_radius(radius),
+            *question_of_growth(radius ** (1.0 / _teeth_of_period(model))),
             *question_of_flutes(case, float(limit.critical_depth[0])),
             *model.notes,
             *notes_of(neglected),

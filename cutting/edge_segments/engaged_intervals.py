@@ -46,13 +46,20 @@ def reach_of_segment(segments, tops, segment, reach):
 
 
 @register_jitable(**INLINED)
-def revolutions_of_group(segments, reach, group, spindle):
+def bounds_of_groups(segments, reach, bounds):
+    """Set bounds (G, 2) to the spindle angles, rad, between which something of a group is cut."""
+    for group in range(bounds.shape[0]):
+        early, late = 1e3, -1e3
+        for segment in range(segments.first_of_group[group], segments.first_of_group[group + 1]):
+            early, late = min(early, reach[segment, 0]), max(late, reach[segment, 3])
+        bounds[group, 0], bounds[group, 1] = early, late
+
+
+@register_jitable(**INLINED)
+def revolutions_of_group(bounds, group, spindle):
     """Revolutions by which a group may have to be turned back to be in the cut, first and last."""
-    early, late = 1e3, -1e3
-    for segment in range(segments.first_of_group[group], segments.first_of_group[group + 1]):
-        early, late = min(early, reach[segment, 0]), max(late, reach[segment, 3])
-    first = math.ceil((spindle - late) / _REVOLUTION - 1e-12)
-    return first, math.floor((spindle - early) / _REVOLUTION + 1e-12)
+    first = math.ceil((spindle - bounds[group, 1]) / _REVOLUTION - 1e-12)
+    return first, math.floor((spindle - bounds[group, 0]) / _REVOLUTION + 1e-12)
 
 
 @register_jitable(**INLINED)

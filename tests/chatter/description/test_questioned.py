@@ -10,11 +10,12 @@ from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import (
     question_of_flutes,
-    question_of_spectral_radius,
+    question_of_growth,
     questions,
     stick_out_compliance,
 )
 from tests.chatter.simulation.test_worn_flank import CASE
+from tests.places import EXAMPLES
 
 
 @pytest.mark.parametrize(
@@ -79,9 +80,22 @@ def test_a_tool_is_no_stiffer_than_its_stick_out():
 
 
 def test_growth_is_told_in_words():
-    assert question_of_spectral_radius(2.0) == []
-    (asked,) = question_of_spectral_radius(7e11)
+    assert question_of_growth(2.0) == []
+    (asked,) = question_of_growth(7e11)
     assert "7e+11 times from tooth to tooth" in asked
+
+
+def test_growth_is_that_of_a_tooth_where_the_tool_repeats_itself_after_more():
+    """Of two teeth with runout it was that of a turn: 1e8 for 1e4."""
+    case = chatter.load(EXAMPLES / "one-degree-of-freedom" / "case.toml").patch(
+        {"cut.axial_depth": "30 mm"}
+    )
+    told = [
+        next(note for note in chatter.check(one).notes if "would grow" in note)
+        for one in (case, case.patch({"tool.runout.offset": "0.01 um"}))
+    ]
+    assert "1.1e+04 times from tooth to tooth" in told[0]
+    assert told[1] == told[0]
 
 
 def test_a_deep_limit_asks_for_the_length_of_the_flutes():

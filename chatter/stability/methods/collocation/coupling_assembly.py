@@ -43,7 +43,7 @@ from chatter.stability.methods.collocation.tool_period_couplings import (
 )
 from chatter.stability.spindle_rotation import STEADY_ROTATION, in_mean_angle, spindle_rotation_at
 from cutting.edge_segments.coupling import part_below, radius_at
-from cutting.edge_segments.engaged_intervals import reach_of_segment
+from cutting.edge_segments.engaged_intervals import bounds_of_groups, reach_of_segment
 from cutting.process_damping.linear_flank import inverse_radius
 
 #: the order of a quadrature along the edge follows the speed in steps of this power of two
@@ -61,8 +61,10 @@ def _edge_down_to(cut, speed, depth):
         reach_of_segment(segments, tops, segment, reach[segment])
         if tops[segment] > 0.0 and segments.delay_index[segment] < 0:
             longest = max(longest, max(segments.delay[segment, 0], segments.delay[segment, 1]))
+    bounds = np.empty((segments.first_of_group.shape[0] - 1, 2))
+    bounds_of_groups(segments, reach, bounds)
     factor = inverse_radius(segments.flank, radius_at(segments, depth))
-    return Edge(tops, reach, 1.0 / (speed * cut.longest), factor), longest
+    return Edge(tops, reach, bounds, 1.0 / (speed * cut.longest), factor), longest
 
 
 @njit(**INNER_KERNEL)

@@ -39,6 +39,7 @@ class Edge(NamedTuple):
 
     tops: Array  # part of each segment below the depth (P,)
     reach: Array  # spindle angles, see `reach_of_segment`, rad (P, 4)
+    bounds: Array  # of each group, see `bounds_of_groups`, rad (G, 2)
     elements: float  # that pass while the tool turns by a radian at the mean speed
     speed_factor: float  # one over the radius where there are dashpots, else 0, 1/m
 
@@ -216,7 +217,7 @@ def couple_edges(cut, edge, layout, rotation, state, row, first_source, sources,
                 of_delay[delay, i, j] = 0.0
     count, spindle = first_source, state.angle
     for group in range(segments.first_of_group.shape[0] - 1):
-        first, last = revolutions_of_group(segments, edge.reach, group, spindle)
+        first, last = revolutions_of_group(edge.bounds, group, spindle)
         for back in range(first, last + 1):
             segment, end = segments.first_of_group[group], segments.first_of_group[group + 1]
             while segment < end:

@@ -16,6 +16,7 @@ from chatter.stability.spindle_rotation import SpindleRotation, angle_at, speed_
 from cutting.edge_segments.coupling import coupling_at, delay_at, part_below, share_of_height
 from cutting.edge_segments.engaged_intervals import (
     MOST_POINTS,
+    bounds_of_groups,
     engaged_interval_from,
     graded,
     length_of_interval,
@@ -42,6 +43,7 @@ class EdgeAtDepth(NamedTuple):
 
     top: Array  # part of each segment below the depth (P,)
     reach: Array  # spindle angles, see `reach_of_segment`, rad (P, 4)
+    bounds: Array  # of each group, see `bounds_of_groups`, rad (G, 2)
     most: int  # sources of one time
 
 
@@ -76,8 +78,10 @@ def edge_at_depth(cut, depth):
         top[segment] = part_below(segments, segment, depth)
         reach_of_segment(segments, top, segment, reach[segment])
         varying += 1 if segments.delay_index[segment] < 0 else 0
+    bounds = np.empty((segments.first_of_group.shape[0] - 1, 2))
+    bounds_of_groups(segments, reach, bounds)
     most = _TURNS * MOST_POINTS * varying + segments.distinct_delay.shape[0]
-    return EdgeAtDepth(top, reach, most)
+    return EdgeAtDepth(top, reach, bounds, most)
 
 
 @njit(**INNER_KERNEL)
@@ -212,7 +216,7 @@ def couple(cut, edge, now, speed_factor, sources, count, present):
     wavelengths = now.rate / (2.0 * math.pi * speed_at(rotation, now.time))
     engaged = 0.0
     for group in range(segments.first_of_group.shape[0] - 1):
-        first, last = revolutions_of_group(segments, edge.reach, group, spindle)
+        first, last = revolutions_of_group(edge.bounds, group, spindle)
         for back in range(first, last + 1):
             segment, end = segments.first_of_group[group], segments.first_of_group[group + 1]
             while segment < end:
