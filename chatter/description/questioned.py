@@ -191,11 +191,11 @@ def _question(name: str, value: float, usual: _Usual, units: UnitSystem = METRIC
     return [f"{name}: is {given} meant? {usual.of} have {ends}"]
 
 
-def question_of_growth(from_tooth_to_tooth: float) -> list[str]:
-    """Sentence on a vibration that grows faster than any cut lets it."""
-    if from_tooth_to_tooth <= _MOST_GROWTH:
+def question_of_spectral_radius(spectral_radius: float) -> list[str]:
+    """Sentence on a vibration that grows faster than any cut lets it; radius of a tooth period."""
+    if spectral_radius <= _MOST_GROWTH:
         return []
     return [
-        f"vibration would grow {from_tooth_to_tooth:.2g} times from tooth to tooth: the depth is "
+        f"vibration would grow {spectral_radius:.2g} times from tooth to tooth: the depth is "
         "far beyond the limit, or a stiffness or a coefficient is in the wrong unit"
     ]

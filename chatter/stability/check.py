@@ -15,7 +15,7 @@ from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import distinct_from, to_digits
 from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
-from chatter.description.questioned import question_of_flutes, question_of_growth
+from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.unit_system import UnitSystem, units_of
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
@@ -411,7 +411,7 @@ def check(
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
-            *question_of_growth(radius ** (1.0 / _teeth_of_period(model))),
+            *question_of_spectral_radius(radius ** (1.0 / _teeth_of_period(model))),
             *question_of_flutes(case, float(limit.critical_depth[0])),
             *model.notes,
             *notes_of(neglected),

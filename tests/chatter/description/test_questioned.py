@@ -10,7 +10,7 @@ from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import (
     question_of_flutes,
-    question_of_growth,
+    question_of_spectral_radius,
     questions,
     stick_out_compliance,
 )
@@ -80,8 +80,8 @@ def test_a_tool_is_no_stiffer_than_its_stick_out():
 
 
 def test_growth_is_told_in_words():
-    assert question_of_growth(2.0) == []
-    (asked,) = question_of_growth(7e11)
+    assert question_of_spectral_radius(2.0) == []
+    (asked,) = question_of_spectral_radius(7e11)
     assert "7e+11 times from tooth to tooth" in asked
 
 
