@@ -222,10 +222,17 @@ def _unquoted(end: str) -> str:
     return end[1:-1] if len(end) > 1 and end[0] == end[-1] == '"' else end
 
 
+def _without_outer_quotes(text: str) -> str:
+    """Range without quotes around the whole of it, where no end has its own."""
+    return _unquoted(text) if text.count('"') == 2 else text
+
+
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
     where = f"--vary {path}"
-    text, count = counted_range(where, text, DEFAULT_COUNT if count is None else count, MOST_VALUES)
-    low, _, high = (with_decimals(_unquoted(part)) for part in text.partition(".."))
+    count = DEFAULT_COUNT if count is None else count
+    text, count = counted_range(where, _without_outer_quotes(text), count, MOST_VALUES)
+    ends = _without_outer_quotes(text).partition("..")
+    low, _, high = (with_decimals(_unquoted(part)) for part in ends)
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
     if re.fullmatch(NUMBER, low) and unit:
