@@ -73,9 +73,10 @@ $(VENV)/.installed: $(VENV)/.python pyproject.toml
 	$(BIN)/python -m pip install --quiet --no-compile --editable .
 	@touch $@
 
-$(VENV)/.installed-dev: $(VENV)/.installed
+# everything in one step; what the demonstration needs is in it
+$(VENV)/.installed-dev: $(VENV)/.python pyproject.toml
 	$(BIN)/python -m pip install --quiet --no-compile --editable '.[dev,formats,manual]'
-	@touch $@
+	@touch $(VENV)/.installed $@
 
 clean:
 	rm -rf $(VENV) .venv-lowest demo-output build dist docs/generated *.egg-info

@@ -19,9 +19,6 @@ gc.set_threshold(50_000, 10, 10)
 settings.register_profile("gate", derandomize="CHATTER_PROPERTIES" not in os.environ, deadline=None)
 settings.load_profile("gate")
 
-#: the site of the manual is built for all tests of this file
-_LONGEST = "tests/manual/test_site.py"
-
 
 def pytest_configure(config):
     """Workers share what they compile."""
@@ -35,9 +32,8 @@ def pytest_configure(config):
 def pytest_collection_modifyitems(items):
     """Mark the slow tests of the list, and nightly tests in a report, which makes their record.
 
-    First, as the marks choose what is run. The longest file begins, so that it does not end alone.
+    First, as the marks choose what is run.
     """
-    items.sort(key=lambda item: not item.nodeid.startswith(_LONGEST))
     slow = nightly_tests()
     for item in items:
         if item.nodeid in slow:

@@ -24,9 +24,9 @@ ROOT = Path(__file__).parents[1]
 LIST = ROOT / "tests" / "nightly.txt"
 #: seconds from which on a case of a test is slow, a test that has but one, of physics or not, and
 #: any test
-SLOW_CASE, SLOW_TEST, SLOW_PHYSICS, VERY_SLOW = 0.2, 0.4, 1.5, 3.0
+SLOW_CASE, SLOW_TEST, SLOW_PHYSICS, VERY_SLOW = 0.2, 0.3, 1.0, 2.5
 #: a kind of the time loop that no more tests than these need is compiled for few
-FEW = 8
+FEW = 12
 #: published numbers, the rules of the tree and the only run of a command stay in every run
 _ALWAYS = (
     "tests/chatter/assembly/test_assemble.py::test_command_writes_what_it_says",

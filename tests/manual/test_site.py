@@ -11,6 +11,9 @@ import pytest
 import chatter
 from tests.places import ROOT
 
+# the site takes a minute to build
+pytestmark = pytest.mark.nightly
+
 
 class Links(HTMLParser):
     """Targets and identifiers of a page."""
