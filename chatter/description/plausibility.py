@@ -54,9 +54,9 @@ def check_plausible(case: Case) -> None:
     angles = helix if isinstance(helix, tuple) else (helix,)
     deepest = max(case.cut.axial_depth, _value(case, "lobes.depths.to") or 0.0)
     where = "cut.axial_depth" if deepest == case.cut.axial_depth else "lobes.depths.to"
-    length = units_of(case).length
     lag = max(abs(math.tan(angle)) for angle in angles) * deepest / (0.5 * case.tool.diameter)
     if not problems and lag > _LARGEST_LAG:
+        length = units_of(case).length
         problems.append(
             f"{case.name}: {where}: within {length.text(deepest, 'g')} the edge winds "
             f"{lag / (2.0 * math.pi):.3g} times around the tool, with its tool.diameter and "
@@ -65,6 +65,7 @@ def check_plausible(case: Case) -> None:
         )
     wave = case.tool.serration
     if not problems and wave is not None and deepest > _MOST_WAVES * wave.wavelength:
+        length = units_of(case).length
         problems.append(
             f"{case.name}: tool.serration.wavelength: {length.text(wave.wavelength, 'g')} makes "
             f"{deepest / wave.wavelength:.3g} waves within {length.text(deepest, 'g')}; at most "
@@ -78,12 +79,13 @@ def _softest_mode(case: Case) -> list[str]:
     """Say which mode is softer by far than the cut, as one whose stiffness is in another unit."""
     if case.material is None or not case.material.Ktc or case.structure is None:
         return []
-    cut, units = case.material.Ktc * case.cut.axial_depth, units_of(case)
+    cut = case.material.Ktc * case.cut.axial_depth
     problems = []
     for index, mode in enumerate(case.structure.mode):
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
         in_plane = math.hypot(mode.direction[0], mode.direction[1]) ** 2
         if cut * in_plane > _STIFFEST_CUT * stiffness:
+            units = units_of(case)
             problems.append(
                 f"{case.name}: structure.mode[{index}].stiffness: "
                 f"{units.stiffness.text(stiffness, '.3g')} is {cut * in_plane / stiffness:.2g} "

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from chatter.description.formatting import to_digits
-from chatter.description.unit_system import METRIC, UnitSystem, units_of
+from chatter.description.unit_system import METRIC, units_of
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
@@ -46,15 +46,15 @@ _MOST_GROWTH = 1e3
 
 def questions(case: Case) -> list[str]:
     """Sentences on values of a case that are far from what is usual."""
-    asked, units = [], units_of(case)
+    asked: list[str] = []
     for index, mode in enumerate(case.structure.mode if case.structure else ()):
         path = f"structure.mode[{index}]"
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
-        asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS, units)
+        asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS, case)
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
     if case.structure is not None and case.structure.friction_amplitude:
         given = case.structure.friction_amplitude
-        asked += _question("structure.friction_amplitude", given, _AMPLITUDE, units)
+        asked += _question("structure.friction_amplitude", given, _AMPLITUDE, case)
     asked += _question_of_stiff_tool(case)
     asked += _questions_of_material(case)
     if case.process_damping is not None and case.process_damping.coefficient:
@@ -62,12 +62,12 @@ def questions(case: Case) -> list[str]:
         asked += _question("process_damping.coefficient", given, _PROCESS_DAMPING)
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
-        asked += _question("cutting speed", speed, _CUTTING_SPEED, units)
-        asked += _question("tool.diameter", case.tool.diameter, _DIAMETER, units)
+        asked += _question("cutting speed", speed, _CUTTING_SPEED, case)
+        asked += _question("tool.diameter", case.tool.diameter, _DIAMETER, case)
         asked += _question_of_depth(case)
         asked += _question_of_feed(case)
         if case.tool.runout is not None:
-            asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT, units)
+            asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT, case)
     return asked
 
 
@@ -76,16 +76,16 @@ def _questions_of_material(case: Case) -> list[str]:
     material = case.material
     if material is None:
         return []
-    asked, units = [], units_of(case)
+    asked: list[str] = []
     if material.Ktc:
-        asked += _question("material.Ktc", material.Ktc, _PRESSURE, units)
+        asked += _question("material.Ktc", material.Ktc, _PRESSURE, case)
     for key in ("Kte", "Kre"):
         value = getattr(material, key)
         if value and value > 0.0:
-            asked += _question(f"material.{key}", value, _EDGE, units)
+            asked += _question(f"material.{key}", value, _EDGE, case)
     if material.Ktc and material.Krc and material.Krc > _LARGEST_RADIAL * material.Ktc:
         asked.append(
-            f"material.Krc: is {units.pressure.text(material.Krc)} meant? the radial "
+            f"material.Krc: is {units_of(case).pressure.text(material.Krc)} meant? the radial "
             f"coefficient is {material.Krc / material.Ktc:.2g} times the tangential one; most "
             "metals have 0.1 to 1"
         )
@@ -94,9 +94,10 @@ def _questions_of_material(case: Case) -> list[str]:
 
 def _question_of_feed(case: Case) -> list[str]:
     """Ask about a chip that no edge of a tool of its diameter takes."""
-    feed, diameter, units = case.cut.feed_per_tooth, case.tool.diameter, units_of(case)
+    feed, diameter = case.cut.feed_per_tooth, case.tool.diameter
     if feed <= _LARGEST_FEED * diameter:
         return []
+    units = units_of(case)
     return [
         f"cut.feed_per_tooth: is {units.length.text(feed, '.3g')} meant? that is "
         f"{feed / diameter:.0%} of the diameter, {units.feed_rate.text(case.feed_speed, '.0f')}"
@@ -105,9 +106,10 @@ def _question_of_feed(case: Case) -> list[str]:
 
 def _question_of_depth(case: Case) -> list[str]:
     """Ask about a cut deeper than any tool of its diameter cuts."""
-    depth, diameter, length = case.cut.axial_depth, case.tool.diameter, units_of(case).length
+    depth, diameter = case.cut.axial_depth, case.tool.diameter
     if depth <= _DEEPEST * diameter:
         return []
+    length = units_of(case).length
     return [
         f"cut.axial_depth: is {length.text(depth)} meant? flutes of a tool of "
         f"{length.text(diameter)} are hardly longer than {length.text(_DEEPEST * diameter)}"
@@ -181,9 +183,11 @@ def _end(value: float, read: UsualUnit) -> str:
     return f"{value:g}" if read.factor == 1.0 else to_digits(value, 2)
 
 
-def _question(name: str, value: float, usual: _Usual, units: UnitSystem = METRIC) -> list[str]:
+def _question(name: str, value: float, usual: _Usual, case: Case | None = None) -> list[str]:
+    """Ask about a value that is not usual, in the units of a case, if given."""
     if usual.low <= value <= usual.high:
         return []
+    units = METRIC if case is None else units_of(case)
     read = units.instead_of(usual.unit)
     unit, factor = read.name, usual.factor * read.factor
     ends = f"{_end(usual.low * factor, read)} to {_end(usual.high * factor, read)} {unit}".rstrip()
