@@ -13,6 +13,7 @@ slow, and the few for which a kind of the time loop would be compiled, are left 
 import argparse
 import json
 import math
+import os
 import subprocess
 import sys
 from collections import Counter, defaultdict
@@ -21,7 +22,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
-LIST = ROOT / "tests" / "nightly.txt"
+#: names the list in place of tests/nightly.txt
+OTHER_LIST = "CHATTER_NIGHTLY_LIST"
+LIST = Path(os.environ.get(OTHER_LIST) or ROOT / "tests" / "nightly.txt")
 #: seconds from which on a case of a test is slow, a test that has but one, of physics or not, and
 #: any test
 SLOW_CASE, SLOW_TEST, SLOW_PHYSICS, VERY_SLOW = 0.2, 0.3, 1.0, 2.5
@@ -109,12 +112,20 @@ def _needing_rare_loops(costs: Mapping[str, Cost]) -> set[str]:
     return {test for test, cost in costs.items() if any(users[kind] <= FEW for kind in cost.loops)}
 
 
-def _collected() -> list[str]:
-    """Node ids of what `make nightly` runs, but for the tests that are marked where they stand."""
-    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:xdist"]
-    marks = ["-m", "not browser and not ansys", "-o", "addopts=--import-mode=importlib"]
-    out = subprocess.run([*command, *marks], capture_output=True, text=True, check=True, cwd=ROOT)
-    return [line for line in out.stdout.splitlines() if line.startswith("tests/")]
+def collected(*words: str) -> list[str]:
+    """Node ids of what `make nightly` runs, but for the tests that are marked where they stand.
+
+    Words are for pytest, such as another folder.
+    """
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-q", "-p", "no:xdist", *words]
+    marks = ["-m", "not browser and not ansys and not nightly"]
+    marks += ["-o", "addopts=--import-mode=importlib"]
+    # without the list, whose tests are marked when they are collected
+    without = {**os.environ, OTHER_LIST: os.devnull}
+    found = subprocess.run(
+        [*command, *marks], capture_output=True, text=True, check=True, cwd=ROOT, env=without
+    )
+    return [line for line in found.stdout.splitlines() if "::" in line]
 
 
 def main() -> None:
@@ -123,10 +134,10 @@ def main() -> None:
     parser.add_argument("costs", type=Path)
     given = parser.parse_args()
     costs = read_costs(given.costs.read_text(encoding="utf-8"))
-    tests = chosen(_collected(), costs, nightly_tests())
+    tests = chosen(collected(), costs, nightly_tests())
     head = "# Tests that `make test` leaves to `make nightly`; made by tests/nightly_tests.py.\n"
     LIST.write_text(head + "".join(f"{one}\n" for one in tests), encoding="utf-8")
-    print(f"{len(tests)} tests in {LIST.relative_to(ROOT)}")
+    print(f"{len(tests)} tests in {LIST.name}")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from tests.nightly_tests import (
     VERY_SLOW,
     Cost,
     chosen,
+    collected,
     nightly_tests,
     read_costs,
 )
@@ -77,3 +78,20 @@ def test_every_test_of_the_list_exists():
         file, _, rest = test.partition("::")
         name = rest.partition("[")[0].rpartition("::")[2]
         assert f"def {name}(" in (ROOT / file).read_text(encoding="utf-8"), test
+
+
+def test_a_test_that_is_marked_where_it_stands_is_not_of_the_list(tmp_path):
+    (tmp_path / "test_three.py").write_text(
+        "import pytest\n\n\ndef test_quick():\n    pass\n\n\n"
+        "@pytest.mark.nightly\ndef test_marked():\n    pass\n\n\n"
+        "@pytest.mark.parametrize('n', [1, pytest.param(2, marks=pytest.mark.nightly)])\n"
+        "def test_cases(n):\n    pass\n"
+    )
+    (tmp_path / "conftest.py").write_text((ROOT / "tests" / "conftest.py").read_text("utf-8"))
+    found = collected("-c", str(ROOT / "pyproject.toml"), "--rootdir", str(tmp_path), str(tmp_path))
+    assert [one.partition("::")[2] for one in found] == ["test_quick", "test_cases[1]"]
+
+
+def test_tests_of_the_list_are_collected_although_it_marks_them():
+    listed = min(nightly_tests())
+    assert listed in collected(listed.partition("::")[0])
