@@ -160,8 +160,6 @@ def _serve(description: Case, options: LobesOptions) -> None:
 
 
 def _print_diagram(diagram: StabilityDiagram) -> None:
-    from chatter.stability.neglected_effects import reasons_of
-
     summary, units = diagram.summary(), diagram.units
     length, removal_rate = units.instead_of("mm"), units.instead_of("cm³/min")
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
@@ -214,13 +212,22 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         f"limit there {_limit(limit, summary['max_axial_depth_mm'], length)} {length.name}"
     )
     if not operating["certain"]:
-        known = diagram.neglected_at_all_speeds if diagram.why_no_pocket else ()
-        left = [effect for effect in diagram.deciding if effect not in known]
-        reasons = reasons_of(left, stable=diagram.operating_is_stable)
-        print_line("; ".join([*reasons, "`chatter simulate` decides"]))
+        print_line("; ".join([*_what_may_turn(diagram), "`chatter simulate` decides"]))
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
     print_line(f"method: {summary['method']}{accuracy}")
+
+
+def _what_may_turn(diagram: StabilityDiagram) -> list[str]:
+    """Clauses on what may turn the verdict on the cut; the note says by how much at all speeds."""
+    from chatter.stability.neglected_effects import reasons_of
+
+    known = diagram.neglected_at_all_speeds
+    left = [effect for effect in diagram.deciding if effect not in known]
+    reasons = reasons_of(left, stable=diagram.operating_is_stable)
+    if diagram.why_no_pocket or len(left) == len(diagram.deciding):
+        return reasons
+    return [*(f"{one.name} may turn this verdict (see the note)" for one in known), *reasons]
 
 
 def _stable_below(depth: float, diagram: StabilityDiagram) -> str:

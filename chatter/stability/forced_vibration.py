@@ -146,16 +146,18 @@ def neglected_edge_forces(
     higher, highest = "", math.inf
     if lowest > 0.0:
         # a stiffness of that share may act against the chip's as well as with it
+        both = f"they may lower the limit by {share:.0%}, or raise it by as much"
         higher, highest = f"{because}may raise the limit by {share:.0%}", 1.0 + share
         because += f"may lower the limit by {share:.0%}"
     else:
-        because += f"are {share:.3g} times as stiff as the chip{at}"
+        both = f"they are {share:.3g} times as stiff as the chip{at}"
+        because += both.removeprefix("they ")
     unit, factor = units_of(model.case).displacement
     feed = to_digits(model.case.cut.feed_per_tooth * factor, 3)
     note = (
         f"edge forces set in or end where the chip of {feed} {unit} a tooth is "
         "zero, and vibration shifts these moments, which linear methods leave out: "
-        f"{because}; the time domain decides (--method time-domain)"
+        f"{both}; the time domain decides (--method time-domain)"
     )
     return (NeglectedEffect(EDGE_FORCES, share, lowest, highest, because, note, higher),)
 

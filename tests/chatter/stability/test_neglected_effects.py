@@ -138,7 +138,16 @@ def test_lobes_says_it_of_the_operating_point(case_file, tmp_path):
     arguments = ("--set", "cut.axial_depth=3.2 mm", "--out", str(out))
     result = chatter_command("lobes", str(case_file), *arguments)
     assert "3.2 mm: stable by the linear analysis, not certain" in result.stdout
-    assert "edge forces that set in at a chip of zero may lower the limit" in result.stdout
+    share = json.loads((out / "summary.json").read_text())["neglected_effects"][0]["share"]
+    assert f"less {share:.0%}: edge forces" in result.stdout
+    assert "edge forces may turn this verdict (see the note)" in result.stdout
+    assert f"may lower the limit by {share:.0%}, or raise it by as much" in result.stderr
+    for depth, words in (("3.2 mm", "stable by the linear"), ("3.4 mm", "chatter by the linear")):
+        at = ("--set", f"cut.axial_depth={depth}", "--out", str(out))
+        said = chatter_command("lobes", str(case_file), *at)
+        assert words in said.stdout
+        assert "may lower" not in said.stdout
+        assert "may raise" not in said.stdout
     assert json.loads((out / "summary.json").read_text())["operating_point"]["certain"] is False
 
 
