@@ -130,7 +130,7 @@ class Case(Description):
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         length = units_of_content(data).length
         return [
-            *depth_problems(self.cut, self.tool, length),
+            *depth_problems(self.cut, self.tool, length, data),
             *friction_problems(self.structure, self.friction),
             *optimum_problems(self.optimum, self.cut, self.tool, length),
             *problems_of_terms(self.empirical),

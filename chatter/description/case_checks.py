@@ -1,6 +1,7 @@
 """Checks across sections of a case."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.friction import Friction
@@ -13,17 +14,21 @@ from chatter.description.usual_units import UsualUnit
 _NO_DEPTH = 0.5
 
 
-def depth_problems(cut: Cut | None, tool: Tool | None, length: UsualUnit) -> list[tuple[str, str]]:
+def depth_problems(
+    cut: Cut | None, tool: Tool | None, length: UsualUnit, data: Mapping[str, Any]
+) -> list[tuple[str, str]]:
     """Check the axial depth against what the tool can cut, in words with a unit of length.
 
-    Path and sentence of what is wrong are returned.
+    Data are what the file says. Path and sentence of what is wrong are returned.
     """
     if cut is None or tool is None or cut.axial_depth <= tool.depth_that_tool_allows * (1.0 + 1e-9):
         return []
     depth = length.text(cut.axial_depth, "g")
     deepest = length.text(tool.depth_that_tool_allows, "g")
-    # no tool cuts a metre deep: the number has no unit, or one that is not meant
-    meant = f'; is "{cut.axial_depth:g} mm" meant?' if cut.axial_depth >= _NO_DEPTH else ""
+    given = data.get("cut", {}).get("axial_depth")
+    # no tool cuts a metre deep: a number without a unit was meant in another than m
+    bare = isinstance(given, (int, float)) and cut.axial_depth >= _NO_DEPTH
+    meant = f'; is "{given:g} {length.name}" meant?' if bare else ""
     text = f"{depth} is more than tool.{tool.limiting_length}, {deepest}{meant}"
     return [("cut.axial_depth", text)]
 

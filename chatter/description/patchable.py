@@ -302,7 +302,7 @@ class Description(Section):
         """
         mapping_given(values, f"{self.name}: a dictionary", EXAMPLE_OF_PATCH)
         data = copied(self._plain())
-        edits = []
+        edits, said = [], []
         notes: list[str] = []
         problems: list[str] = []
         unknown: list[str] = []
@@ -314,6 +314,7 @@ class Description(Section):
                 self._check_known(steps)
                 unknown += self._newly_made(data, steps)
                 given = ranges_spelt_out(type(self), steps, given)
+                said.append((steps, given))
                 given = self._in_given_unit(data, steps, given)
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))
@@ -326,11 +327,24 @@ class Description(Section):
         except InputError as error:
             # a table that was made and is not whole: its name is hardly meant
             raise InputError(
-                [f"{self.name}: {text}" for text in unknown] or error.messages
+                [f"{self.name}: {text}" for text in unknown] or self._words_on(said, error)
             ) from None
         made._document, made._edits = self._document, (*self._edits, *edits)
         made._notes = (*self._notes, *notes)
         return made
+
+    def _words_on(
+        self, said: Sequence[tuple[tuple[Step, ...], Any]], error: InputError
+    ) -> list[str]:
+        """Words of an error of what was set, said of bare numbers as they were given."""
+        data = copied(self._plain())
+        for steps, value in said:
+            set_value(data, steps, copied(value), self.LAYOUT, PLAIN)
+        try:
+            self._validated(data, self.name, self._folder)
+        except InputError as of_bare:
+            return of_bare.messages
+        return error.messages
 
     def deviations(self) -> dict[str, float]:
         """Standard deviations (SI) of the values given as "1650 +- 80 MPa", by path."""

@@ -165,6 +165,8 @@ def test_a_depth_in_metres_is_asked_about():
     """1.5 was answered with "1500 mm is more than tool.flute_length", of which nothing was said."""
     with pytest.raises(InputError, match=r'22 mm; is "1.5 mm" meant\?'):
         cut(tool__flute_length="22 mm", cut__axial_depth=1.5)
+    with pytest.raises(InputError, match=r"1016 mm is more than tool.flute_length, 22 mm$"):
+        cut(tool__flute_length="22 mm", cut__axial_depth="40 in")
     with pytest.raises(InputError, match=r"flute_length, 22 mm$"):
         cut(tool__flute_length="22 mm", cut__axial_depth="25 mm")
 
