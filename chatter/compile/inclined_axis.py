@@ -10,6 +10,7 @@ import numpy as np
 from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.unit_system import units_of
 from cutting.engagement.inclined_tool import InclinedEngagement, ToolAxis
 from cutting.tool.cutter import Cutter, corner_height
 
@@ -163,7 +164,7 @@ def check_inclined_axis(case: Case) -> None:
     """InputError where the tool axis is inclined and the case holds what is not computed then."""
     if not is_inclined(case):
         return
-    problems = _of_tool(case) + _of_cut(case) + _of_laws(case)
+    problems = _of_tool(case) + _of_flutes(case) + _of_cut(case) + _of_laws(case)
     if problems:
         where = f"{case.name}: cut.{_key(case)}: with an inclined tool axis "
         raise InputError([where + problem for problem in problems])
@@ -197,6 +198,22 @@ def _of_cone(case: Case, cutter: Cutter) -> list[str]:
         f"the flank of the taper, at {math.degrees(cutter.edge_angle):.4g} deg, would be the "
         f"lowest of the tool, with its axis at {math.degrees(tool_axis_angle(case)):.4g} deg; "
         "incline it by less"
+    ]
+
+
+def _of_flutes(case: Case) -> list[str]:
+    """What keeps edges from reaching as far up the tool as the work does."""
+    tool, cutter = case.tool, cutter_of(case)
+    if case.cut.mode not in _SIDES:
+        return []
+    reached, length = inclined_engagement(case, cutter).top, units_of(case).length
+    # within a corner the height is that of the cylinder around it, above the edge
+    if reached <= max(tool.depth_that_tool_allows, corner_height(cutter)) * (1.0 + 1e-9):
+        return []
+    return [
+        f"the work reaches {length.text(reached, '.3g')} up the tool, which is more than "
+        f"tool.{tool.limiting_length}, {length.text(tool.depth_that_tool_allows, 'g')}; incline it "
+        "by less, or cut less deep"
     ]
 
 

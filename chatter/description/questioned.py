@@ -34,12 +34,14 @@ _PROCESS_DAMPING = _Usual(1e2, 1e8, "N/m", 1.0, "edges in metals")
 _AMPLITUDE = _Usual(1e-9, 0.2e-3, "um", 1e6, "axes that vibrate in a cut")
 _DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
 #: diameters beyond which a depth of cut is asked about, and those that common flutes are long
-_DEEPEST, _COMMON_FLUTES = 8.0, 3.0
+LONGEST_FLUTES, _COMMON_FLUTES = 8.0, 3.0
 #: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
 _CARBIDE, _STIFFER = 650e9, 1.5
 #: feed per tooth over the diameter, and radial over tangential cutting pressure, beyond which they
 #: are asked about
 _LARGEST_FEED, _LARGEST_RADIAL = 0.05, 2.0
+#: angle of a tool axis from the normal of the surface beyond which it is asked about, rad
+_LARGEST_LEAN = math.radians(60.0)
 #: growth of vibration from tooth to tooth beyond which the input is in doubt
 _MOST_GROWTH = 1e3
 
@@ -66,6 +68,7 @@ def questions(case: Case) -> list[str]:
         asked += _question("tool.diameter", case.tool.diameter, _DIAMETER, case)
         asked += _question_of_depth(case)
         asked += _question_of_feed(case)
+        asked += _question_of_lean(case)
         if case.tool.runout is not None:
             asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT, case)
     return asked
@@ -107,12 +110,27 @@ def _question_of_feed(case: Case) -> list[str]:
 def _question_of_depth(case: Case) -> list[str]:
     """Ask about a cut deeper than any tool of its diameter cuts."""
     depth, diameter = case.cut.axial_depth, case.tool.diameter
-    if depth <= _DEEPEST * diameter:
+    if depth <= LONGEST_FLUTES * diameter:
         return []
     length = units_of(case).length
     return [
         f"cut.axial_depth: is {length.text(depth)} meant? flutes of a tool of "
-        f"{length.text(diameter)} are hardly longer than {length.text(_DEEPEST * diameter)}"
+        f"{length.text(diameter)} are hardly longer than {length.text(LONGEST_FLUTES * diameter)}"
+    ]
+
+
+def _question_of_lean(case: Case) -> list[str]:
+    """Ask about a tool axis that lies so flat that the holder would meet the work."""
+    cut = case.cut
+    lean = math.acos(math.cos(cut.lead) * math.cos(cut.tilt))
+    if lean <= _LARGEST_LEAN:
+        return []
+    key = max(("lead", "tilt"), key=lambda one: abs(getattr(cut, one)))
+    return [
+        f"cut.{key}: is {math.degrees(getattr(cut, key)):.4g} deg meant? the tool axis lies "
+        f"{90.0 - math.degrees(lean):.4g} deg above the surface; whether its holder clears the "
+        f"workpiece is not computed (beyond {math.degrees(_LARGEST_LEAN):.0f} deg from the normal "
+        "few do)"
     ]
 
 
@@ -128,6 +146,19 @@ def question_of_flutes(case: Case, depth: float) -> list[str]:
     return [
         f"{units_of(case).length.text(depth, '.3g')} are {depth / tool.diameter:.2g} "
         "diameters of the tool: state tool.flute_length, and no depth goes beyond it"
+    ]
+
+
+def question_of_search(case: Case, depth: float) -> list[str]:
+    """Sentence on a search, to a depth in m, that no key of the case ends; none where one does."""
+    stated = case.lobes is not None and case.lobes.depths is not None
+    if stated or not question_of_flutes(case, depth):
+        return []
+    length = units_of(case).length
+    return [
+        f"the maximum axial depth searched is {length.text(depth, '.3g')}, "
+        f"{depth / case.tool.diameter:.2g} diameters of the tool: state tool.flute_length, or the "
+        "height of a wall as lobes.depths.to, and no depth goes beyond it"
     ]
 
 

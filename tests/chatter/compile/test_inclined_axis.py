@@ -116,6 +116,22 @@ def test_what_is_not_computed_is_refused_with_the_reason(tool, cut, rest, words)
             call(case)
 
 
+def test_work_that_reaches_above_the_flutes_is_refused():
+    """At s along the axis from the centre of the ball its shank is R (1 - sin a) + s cos a high."""
+    radius, depth, lean = 5.0, 0.3, math.radians(80.0)
+    top = radius + (depth - radius * (1.0 - math.sin(lean))) / math.cos(lean)
+    case = of_ball(lead="80 deg", axial_depth=f"{depth} mm")
+    short = case.patch({"tool.flute_length": f"{0.99 * top} mm"})
+    words = (
+        rf"cut\.lead: .* reaches {top:.3g} mm up the tool, .* tool\.flute_length, {0.99 * top:.6g}"
+    )
+    with pytest.raises(InputError, match=words):
+        chatter.check(short)
+    chatter.check(case.patch({"tool.flute_length": f"{1.01 * top} mm"}))
+    # all in the ball, whose edges reach as far as it does
+    chatter.check(of_ball(lead="15 deg", axial_depth="0.3 mm").patch({"tool.flute_length": "1 mm"}))
+
+
 def test_studies_that_take_an_upright_tool_say_so():
     case = of_ball(tilt="10 deg")
     for call in (chatter.optimum, chatter.pitch):

@@ -99,6 +99,26 @@ def test_growth_is_that_of_a_tooth_where_the_tool_repeats_itself_after_more():
     assert told[1] == told[0]
 
 
+@pytest.mark.parametrize(
+    ("lead", "tilt", "asked"),
+    [
+        ("15 deg", "0 deg", ""),
+        ("59 deg", "0 deg", ""),
+        # cos 40 deg cos 40 deg = cos 54.1 deg; cos 50 deg cos 50 deg = cos 65.6 deg
+        ("40 deg", "-40 deg", ""),
+        ("50 deg", "-50 deg", "cut.lead: is 50 deg meant? the tool axis lies 24.4 deg above"),
+        ("80 deg", "0 deg", "cut.lead: is 80 deg meant? the tool axis lies 10 deg above"),
+        ("5 deg", "-75 deg", "cut.tilt: is -75 deg meant? the tool axis lies 14.94 deg above"),
+    ],
+)
+def test_a_tool_that_lies_down_is_asked_about(lead, tilt, asked):
+    text = CASE.replace('radial_depth = "8 mm"', 'stepover = "0.3 mm"').replace("end mill", "ball")
+    leaning = loads(text).patch({"cut.lead": lead, "cut.tilt": tilt})
+    found = [one for one in questions(leaning) if one.startswith("cut.")]
+    assert (found[0] if found else "").startswith(asked)
+    assert len(found) == bool(asked)
+
+
 def test_a_deep_limit_asks_for_the_length_of_the_flutes():
     case = loads(CASE)
     (asked,) = question_of_flutes(case, 3.5 * case.tool.diameter)
