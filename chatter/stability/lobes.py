@@ -5,7 +5,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.progress import Progress, begin, no_progress
-from chatter.description.questioned import question_of_flutes
+from chatter.description.questioned import question_of_flutes, question_of_search
 from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import notes_on_dashpot
@@ -84,7 +84,7 @@ def lobes(
         notes=(
             *model.notes, *notes_of(found.neglected),
             *notes_on_dashpot(model, chosen), *notes_on_tolerance(model, limits),
-            *question_of_flutes(case, deepest_pocket),
+            *(question_of_flutes(case, deepest_pocket) or question_of_search(case, max_depth)),
         ),
         zero_order=zero_order,
         pockets=found.pockets,

@@ -50,6 +50,8 @@ def find_pockets(
     that is kept in hand. A depth that is stable at every speed is no pocket.
     """
     lowest, kept = limits.min(), 1.0 - depth_margin
+    if not kept > 0.0:
+        return ()
     # what is left of the lowest limit, too, where more than the usual margin is kept
     lowest = lowest * min(1.0, kept / (1.0 - DEPTH_MARGIN))
     # of limits that are alike everywhere, any speed is as good

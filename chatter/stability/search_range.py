@@ -6,6 +6,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.questioned import LONGEST_FLUTES
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 
 _SPEED_COUNT = 400
@@ -33,7 +34,7 @@ def spindle_speeds(case: Case) -> Array:
 
 
 def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
-    """Depth to which limits are searched, m: no deeper than the tool can cut."""
+    """Depth to which limits are searched, m: no deeper than the tool can cut, or its like."""
     wanted = case.lobes.depths if case.lobes else None
     if wanted is not None:
         return min(wanted.to, case.tool.depth_that_tool_allows)
@@ -43,7 +44,8 @@ def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
         finite = zero_order.critical_depth[np.isfinite(zero_order.critical_depth)]
         if finite.size:
             candidates.append(min(float(finite.max()), 4.0 * candidates[-1]))
-    return min(max(candidates), case.tool.depth_that_tool_allows)
+    deepest = max(LONGEST_FLUTES * case.tool.diameter, _BEYOND * case.cut.axial_depth)
+    return min(max(candidates), deepest, case.tool.depth_that_tool_allows)
 
 
 def beyond_the_cut(case: Case, max_depth: float) -> float:

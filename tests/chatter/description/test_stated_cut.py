@@ -139,6 +139,22 @@ def test_no_search_is_deeper_than_the_tool_can_cut(key):
     assert all(pocket.axial_depth <= 1e-3 * (1.0 + 1e-9) for pocket in diagram.pockets)
 
 
+def test_a_search_ends_at_the_longest_usual_flutes_and_names_the_keys():
+    """A thin wall without a key that ends it was searched down to 105 mm with a tool of 12 mm."""
+    # edge forces of many times the chip's, so that no pocket is named
+    material = {"Ktc": "10 MPa", "Krc": "3 MPa", "Kte": "20 N/mm", "Kre": "20 N/mm"}
+    case = loads(text()).patch({"material": material, "lobes.speeds": "3000..9000 rpm:20"})
+    diagram = chatter.lobes(case)
+    assert np.max(diagram.max_depth) == pytest.approx(8.0 * case.tool.diameter)
+    (told,) = [one for one in diagram.notes if "maximum axial depth searched" in one]
+    assert "8 diameters of the tool: state tool.flute_length" in told
+    assert "lobes.depths.to" in told
+    for key, value in (("lobes.depths.to", "60 mm"), ("tool.flute_length", "60 mm")):
+        ended = chatter.lobes(case.patch({key: value}))
+        assert np.max(ended.max_depth) == pytest.approx(60e-3)
+        assert not any("maximum axial depth searched" in one for one in ended.notes)
+
+
 def test_a_cut_deeper_than_the_flutes_is_refused():
     with pytest.raises(InputError, match=r"0.5 mm is more than tool.flute_length, 0.4 mm"):
         loads(text()).patch({"tool.flute_length": "0.4 mm"})
