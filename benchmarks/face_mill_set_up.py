@@ -187,7 +187,7 @@ def explained(name: str, seed: int) -> None:
     print(f"{name}, seed {seed}: {summary['verdict']}, {taken:.0f} s of CPU")
     for effect in summary["effects"]:
         for key, one in effect["parameters"].items():
-            low, high = one["ci95"]
+            low, high = one["ci95"] or (math.nan, math.nan)
             print(f"  {effect['name']}.{key}: {one['value']:.5g}, {low:.5g} to {high:.5g}")
     for kind, error in summary["error_by_kind"].items():
         shown = ("before", "after", "holdout_before", "holdout_after", "noise_floor")

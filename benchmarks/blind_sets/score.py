@@ -131,7 +131,7 @@ def _intervals(effects, expected: Mapping[str, Mapping[str, float]]) -> tuple[in
     for effect in effects:
         true = {key.lower(): value for key, value in expected.get(effect["name"], {}).items()}
         for key, stated in effect["parameters"].items():
-            if key.lower() not in true:
+            if key.lower() not in true or stated["ci95"] is None:
                 continue
             asked += 1
             low, high = stated["ci95"]

@@ -21,6 +21,8 @@ Numbers = dict[str, tuple[float, str]]
 _POINTS = 41
 #: share of an undetermined combination from which on it is one of a parameter
 _PART = 0.1
+#: share of the size of a parameter that changes what depends on it
+_SLIGHT = 1e-3
 
 
 def probability(stage: Stage, most: float) -> float:
@@ -52,7 +54,7 @@ def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
 
     Where the data do not determine a combination of its parameters, the values are the smallest
     that explain them, intervals reach as far as the bounds allow, and the parameters that are
-    determined are reported beside.
+    determined are reported beside. What was chosen among a few forms, such as a power, has none.
     """
     indices, own = [], {}
     for index, one in enumerate(fit.parameters):
@@ -79,6 +81,9 @@ def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
         if spread > 0.0:
             determined = determined - np.outer(along, along) / spread
     found = _with_intervals(numbers, values, determined)
+    for key, entry in found.items():
+        if key not in own and _is_chosen(key, numbers, values, fit.slopes[indices]):
+            entry["ci95"] = None
     for direction in free:
         _widened(found, numbers, values, direction, list(own.values()))
     if free:
@@ -130,6 +135,15 @@ def _with_intervals(
     return found
 
 
+def _is_chosen(
+    key: str, numbers: Callable[[Vector], Numbers], values: Vector, sizes: Vector
+) -> bool:
+    """Whether a number is the same whatever the parameters are: it comes from the form alone."""
+    slight = _SLIGHT * sizes
+    moved = [values + step * (np.arange(values.size) == k) for k, step in enumerate(slight)]
+    return all(numbers(at)[key] == numbers(values)[key] for at in (*moved, values + slight))
+
+
 def _entry(value: float, unit: str, interval: list[float]) -> dict[str, Any]:
     return {"value": float(value), "unit": unit, "ci95": [float(end) for end in interval]}
 
@@ -151,5 +165,7 @@ def _widened(
             ends = [max(ends[0], reach[0]), min(ends[1], reach[1])]
     for step in np.linspace(*ends, _POINTS):
         for key, (value, _) in numbers(values + step * direction).items():
+            if found[key]["ci95"] is None:
+                continue
             low, high = found[key]["ci95"]
             found[key]["ci95"] = [min(low, value), max(high, value)]

@@ -55,7 +55,13 @@ def dimension_read_in(dimension: str, value: float) -> tuple[str, float]:
 
 
 def parameter_row(name: str, one: Mapping[str, Any]) -> list[str]:
-    """Name, value, unit and interval of a parameter, given as its value, SI unit and `ci95`."""
+    """Name, value, unit and interval of a parameter, given as its value, SI unit and `ci95`.
+
+    What was chosen has no interval.
+    """
     unit, factor = read_in(str(one["unit"]), one["value"])
+    value = f"{factor * one['value']:.4g}"
+    if one["ci95"] is None:
+        return [name, value, unit, "chosen"]
     low, high = (f"{factor * end:.4g}" for end in one["ci95"])
-    return [name, f"{factor * one['value']:.4g}", unit, f"{low} to {high}"]
+    return [name, value, unit, f"{low} to {high}"]

@@ -70,6 +70,11 @@ def test_the_slope_of_a_frequency_is_read_in_percent_per_thousand_revolutions():
     assert parameter_row("slope", one) == row
 
 
+def test_what_was_chosen_is_shown_without_an_interval():
+    one = {"value": 2.0, "unit": "", "ci95": None}
+    assert parameter_row("power", one) == ["power", "2", "", "chosen"]
+
+
 def test_tables_of_explain_have_headings():
     """An error table without headings."""
     source = (ROOT / "chatter" / "cli" / "explain.py").read_text(encoding="utf-8")

@@ -369,7 +369,8 @@ def explain(stored: StoredCase) -> Readings:
     for effect in effects:
         for name, one in effect["parameters"].items():
             # least squares end within a ten-thousandth of the parameter's own interval
-            width = float(one["ci95"][1] - one["ci95"][0])
+            low, high = one["ci95"] or (one["value"], one["value"])
+            width = float(high - low)
             found[f"{effect['name']}: {name}"] = Reading(
                 float(one["value"]), one["unit"], 1e-3, 1e-2 * width
             )

@@ -318,3 +318,17 @@ def test_the_process_damping_of_a_heavy_slow_machine_is_known_as_well_as_that_of
     assert reported["ci95"] == pytest.approx(
         [true - 1.96 * deviation, true + 1.96 * deviation], rel=0.03
     )
+
+
+def test_the_power_and_the_mode_of_a_shift_are_chosen_and_have_no_interval():
+    """Three members are tried with whole powers; no data give one of them 0.4 percent."""
+    effect, true, deviation = ModeShiftOf(1, square=1), -0.12, 0.004
+    (own,) = effect.parameters(SimpleNamespace(case=CASE))
+    own = replace(own, name=f"{effect.name}.{own.name}")
+    found = fit([own], lambda values: (values - true) / deviation, np.zeros(1))
+    reported = parameters_of(found, effect)
+    assert (reported["power"]["value"], reported["power"]["ci95"]) == (2.0, None)
+    assert (reported["mode"]["value"], reported["mode"]["ci95"]) == (2.0, None)
+    assert reported["change"]["ci95"] == pytest.approx(
+        [true - 1.96 * deviation, true + 1.96 * deviation], rel=0.01
+    )
