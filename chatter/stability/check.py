@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from chatter.compile.chip_of_teeth import thickest_chip_of_teeth
 from chatter.compile.cutter import cutter_of
 from chatter.compile.inclined_axis import diameter_in_cut, inclined_engagement, is_inclined
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.formatting import distinct_from, to_digits
-from chatter.description.material_words import thickest_chip
 from chatter.description.progress import Progress, begin, no_progress
 from chatter.description.questioned import question_of_flutes, question_of_spectral_radius
 from chatter.description.unit_system import UnitSystem, units_of
@@ -257,7 +257,8 @@ class StabilityCheck(NotebookResult):
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             [
                 "spectral radius",
-                f"{distinct_from(self.spectral_radius, 1.0)}{self._radius_by()} (below 1: stable)",
+                f"{distinct_from(self.spectral_radius, 1.0)}{self._radius_by()} (below 1: stable"
+                f"{'; of a period of the speed' if cut.speed_variation else ''})",
             ],
             ["cutting speed", f"{to_digits(cutting_speed.factor * speed, 4)} {cutting_speed.name}"],
             *effective,
@@ -294,10 +295,12 @@ class StabilityCheck(NotebookResult):
         ]
 
     def _thickest_chip(self) -> list[list[str]]:
-        """Thickest chip of the rigid cut of a straight edge; a corner makes it thinner."""
-        if cutter_of(self.case).corner_radius > 0.0:
+        """Thickest chip of the rigid cut of an edge; a corner makes it thinner."""
+        cutter = cutter_of(self.case)
+        if cutter.corner_radius > 0.0:
             return []
-        return [["thickest chip", self.units.length.text(thickest_chip(self.case), ".3g")]]
+        thickest = thickest_chip_of_teeth(self.case, cutter)
+        return [["thickest chip", self.units.length.text(thickest, ".3g")]]
 
     def _engagement_of_inclined(self) -> list[list[str]]:
         case = self.case
