@@ -69,6 +69,7 @@ def questions(case: Case) -> list[str]:
         asked += _question_of_depth(case)
         asked += _question_of_feed(case)
         asked += _question_of_lean(case)
+        asked += _question_of_serration(case)
         if case.tool.runout is not None:
             asked += _question("tool.runout.offset", case.tool.runout.offset, _RUNOUT, case)
     return asked
@@ -131,6 +132,18 @@ def _question_of_lean(case: Case) -> list[str]:
         f"{90.0 - math.degrees(lean):.4g} deg above the surface; whether its holder clears the "
         f"workpiece is not computed (beyond {math.degrees(_LARGEST_LEAN):.0f} deg from the normal "
         "few do)"
+    ]
+
+
+def _question_of_serration(case: Case) -> list[str]:
+    """Ask about a wave that is deeper than long, as one in another unit."""
+    wave, length = case.tool.serration, units_of(case).length
+    if wave is None or wave.depth <= wave.wavelength:
+        return []
+    return [
+        f"tool.serration.depth: is {length.text(wave.depth)} meant? that is "
+        f"{wave.depth / wave.wavelength:.2g} times tool.serration.wavelength, "
+        f"{length.text(wave.wavelength)}; waves of roughing tools are less deep than long"
     ]
 
 

@@ -119,6 +119,16 @@ def test_a_tool_that_lies_down_is_asked_about(lead, tilt, asked):
     assert len(found) == bool(asked)
 
 
+@pytest.mark.parametrize(("depth", "asked"), [("0.4 mm", 0), ("2 mm", 0), ("4 mm", 1)])
+def test_a_wave_deeper_than_long_is_asked_about(depth, asked):
+    serrated = {"tool.serration": {"depth": depth, "wavelength": "2 mm"}}
+    found = questions(loads(CASE).patch(serrated))
+    assert len(found) == asked
+    assert all(
+        "serration.depth: is 4 mm meant? that is 2 times" in one and "2 mm;" in one for one in found
+    )
+
+
 def test_a_deep_limit_asks_for_the_length_of_the_flutes():
     case = loads(CASE)
     (asked,) = question_of_flutes(case, 3.5 * case.tool.diameter)
