@@ -16,6 +16,8 @@ _INCH, _POUND = 0.0254, 4.4482216152605
 _OF_INCHES = re.compile(r"(?:in|inch|inches|mil|thou|ft|ipt|ipm|sfm|sfpm)\b|\"|″", re.IGNORECASE)
 _OF_METRES = re.compile(r"(?:mm|um|µm|μm|cm|m)\b")
 _UNIT = re.compile(r"[^0-9]*$")
+#: m, from which on a chip or a vibration is read in the unit of lengths, not in that of small ones
+_LONG = 1e-4
 
 
 class UnitSystem(NamedTuple):
@@ -37,6 +39,10 @@ class UnitSystem(NamedTuple):
     roughness: UsualUnit
     power: UsualUnit
     torque: UsualUnit
+
+    def at_the_size_of(self, *lengths: float) -> UsualUnit:
+        """Unit in which lengths, m, are read together: that of displacement where all are small."""
+        return self.length if max(lengths) >= _LONG else self.displacement
 
     def instead_of(self, metric: str, quantity: str = "") -> UsualUnit:
         """Unit that is read instead of a metric one, by its name, and its number in one of it.

@@ -111,7 +111,7 @@ def _loss_of_contact(
         return ()
     lengths = (found.amplitude, found.chip, found.chip_change)
     units = units_of(model.case)
-    unit, factor = units.displacement
+    unit, factor = units.at_the_size_of(*lengths)
     amplitude, chip, change = (f"{to_digits(one * factor, 3)} {unit}" for one in lengths)
     note = (
         f"at {rpm(speed):.0f} rpm and {units.length.text(depth, '.3g')} the forced vibration of "
@@ -152,11 +152,11 @@ def neglected_edge_forces(
     else:
         both = f"they are {share:.3g} times as stiff as the chip{at}"
         because += both.removeprefix("they ")
-    unit, factor = units_of(model.case).displacement
-    feed = to_digits(model.case.cut.feed_per_tooth * factor, 3)
+    feed = model.case.cut.feed_per_tooth
+    unit, factor = units_of(model.case).at_the_size_of(feed)
     note = (
-        f"edge forces set in or end where the chip of {feed} {unit} a tooth is "
-        "zero, and vibration shifts these moments, which linear methods leave out: "
+        f"edge forces set in or end where the chip of {to_digits(feed * factor, 3)} {unit} a "
+        "tooth is zero, and vibration shifts these moments, which linear methods leave out: "
         f"{both}; the time domain decides (--method time-domain)"
     )
     return (NeglectedEffect(EDGE_FORCES, share, lowest, highest, because, note, higher),)
@@ -221,7 +221,8 @@ def _flank_beyond_the_land(
     fastest = model.cut(depth).fastest / (2.0 * math.pi)
     waves = flank.contact_length * fastest / (speed * model.cutter.radius)
     if waves > _LONG_LAND:
-        land = f"{flank.contact_length * 1e6:.3g} um, {waves:.2g} of the wave"
+        length = units_of(model.case).at_the_size_of(flank.contact_length)
+        land = f"{length.text(flank.contact_length, '.3g')}, {waves:.2g} of the wave"
         note = (
             f"ploughing: the flank touches over {land} that {fastest:.0f} Hz leaves at "
             f"{rpm(speed):.0f} rpm; it is then no mere dashpot, and the limit in the time domain "

@@ -8,7 +8,7 @@ import pytest
 
 import chatter
 from chatter.description.errors import InputError
-from chatter.description.unit_system import METRIC
+from chatter.description.unit_system import INCH, METRIC
 from tests.command_line import chatter_command
 from tests.first_use.shop import cut, written
 from tests.places import EXAMPLES
@@ -224,9 +224,21 @@ def test_a_band_without_a_unit_is_answered_in_words_of_the_option():
 
 
 def test_no_length_is_written_with_an_exponent():
-    """ "displacement 1.21e+03 um peak"."""
+    """ "displacement 1.21e+03 um peak"; then "2500 um a tooth", where a shop says 2.5 mm."""
     notes = chatter.check(cut(cut__feed_per_tooth="2.5 mm", material__Kte="900 N/mm")).notes
-    assert any("the chip of 2500 um a tooth" in one for one in notes)
+    assert any("the chip of 2.5 mm a tooth" in one for one in notes)
+    assert not any("um" in one for one in notes)
+
+
+def test_a_chip_is_read_in_the_unit_of_its_size():
+    """Tenths of a millimetre in mm, hundredths in um; an inch is 25.4 mm, a mil 25.4 um."""
+    assert METRIC.at_the_size_of(1e-3).text(1e-3) == "1 mm"
+    assert METRIC.at_the_size_of(0.12e-3).text(0.12e-3) == "0.12 mm"
+    assert METRIC.at_the_size_of(80e-6).text(80e-6) == "80 um"
+    assert INCH.at_the_size_of(1.27e-3).text(1.27e-3) == "0.05 in"
+    assert INCH.at_the_size_of(50.8e-6).text(50.8e-6) == "2 mil"
+    # beside each other they have one unit
+    assert METRIC.at_the_size_of(80e-6, 0.25e-3).name == "mm"
 
 
 def test_pockets_on_a_machine_keep_what_its_frictions_may_take():

@@ -1,6 +1,7 @@
 """Forced vibration of the steady cut: against the simulation, and where it is told."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -143,6 +144,15 @@ def test_it_grows_with_the_feed_and_the_share_missed_does_not():
     assert large.amplitude == pytest.approx(3.0 * small.amplitude, rel=1e-9)
     assert large.chip_change == pytest.approx(3.0 * small.chip_change, rel=1e-9)
     assert large.loss_of_contact == pytest.approx(small.loss_of_contact, abs=1e-9)
+
+
+def test_a_thick_chip_is_told_in_millimetres():
+    """h = f_z sin(phi) of the widest pitch, 130 deg of 120, at the exit cos(phi) = 1 - 3/5."""
+    chip = 0.3 * 130.0 / 120.0 * math.sqrt(1.0 - 0.4**2)
+    (note,) = told(chatter.check(cut_of(cut={"feed_per_tooth": 0.3e-3})).notes)
+    shown = re.search(r"changes the chip of ([0-9.]+) mm by up to [0-9.]+ mm:", note)
+    assert float(shown[1]) == pytest.approx(chip, rel=0.02)
+    assert " um" not in note
 
 
 def test_one_tooth_that_alone_cuts_keeps_its_chip():
