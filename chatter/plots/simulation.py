@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
 
 _TURN = 2.0 * math.pi
+#: of a row of panels of the height 1, inches
+_HEIGHT = 2.8
 _COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 #: revolutions, or groups of them, that show a whole run as a band
 _LEAST_BANDS, _MOST_BANDS = 16, 400
@@ -45,43 +48,71 @@ _LEAST_HARMONICS = 6
 _FAINTEST = 1e-4
 
 
+class _Row(NamedTuple):
+    """Panels beside each other; none where there is nothing to be drawn."""
+
+    height: float
+    panels: Sequence[Callable[[Axes], None]]
+    widths: tuple[float, ...] = (1.0, 1.0)
+
+
 def plot_simulation(result: SimulationResult) -> Figure:
     """Draw forces, motion, spectrum, once-a-turn points and the surface of a run."""
-    figure = style.new_figure(11.0, 12.0)
+    every = (*_signals(result), _frequency_and_section(result), _workpiece_or_surface(result))
+    rows = [row for row in every if row.panels]
+    heights = [row.height for row in rows]
+    figure = style.new_figure(11.0, _HEIGHT * sum(heights))
     figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
-    grid = figure.add_gridspec(4, 1, height_ratios=[1.0, 1.0, 1.15, 1.15])
-    force, micrometres = result.units.force, result.units.instead_of("µm")
-    motion = result.displacement * result.units.displacement.factor
-    signals = (
-        (f"force [{force.name}]", ("Fx", "Fy", "Fz"), result.force * force.factor),
-        (f"displacement [{micrometres.name}]", ("x", "y", "z"), motion),
-    )
-    for row, (label, names, values) in enumerate(signals):
-        pair = grid[row].subgridspec(1, 2)
-        draw_run(figure.add_subplot(pair[0]), result, values, names, label)
-        draw_last_revolutions(figure.add_subplot(pair[1]), result, values, names, label)
-    middle = grid[2].subgridspec(1, 2, width_ratios=[1.7, 1.0])
-    draw_spectrum(figure.add_subplot(middle[0]), result)
-    draw_poincare_section(figure.add_subplot(middle[1]), result)
-    bottom = grid[3].subgridspec(1, 2)
-    if _shows_workpiece(result):
-        layers = len(result.setup.slices.height)
-        for index, layer in enumerate(sorted({0, layers - 1})):
-            panel = figure.add_subplot(bottom[index])
-            height = result.units.length.text(result.setup.slices.height[layer], ".2g")
-            panel.set_title(f"workpiece {height} above the tip", **style.TITLE)
-            draw_workpiece(panel, result, layer)
-        return figure
-    if isinstance(result.setup.path, ToolCourse):
-        draw_course(figure.add_subplot(bottom[0]), result)
-        draw_feed(figure.add_subplot(bottom[1]), result)
-        return figure
-    if result.finish.floor is not None and not result.finish.walls:
-        draw_profiles(figure.add_subplot(grid[3]), result)
-        return figure
-    draw_wall(figure.add_subplot(bottom[0]), result)
-    draw_profiles(figure.add_subplot(bottom[1]), result)
+    for row, place in zip(rows, figure.add_gridspec(len(rows), height_ratios=heights), strict=True):
+        widths = row.widths[: len(row.panels)]
+        beside = place.subgridspec(1, len(widths), width_ratios=widths)
+        for index, draw in enumerate(row.panels):
+            draw(figure.add_subplot(beside[index]))
+    notes = result.finish.notes
+    if not every[-1].panels and notes:
+        figure.supxlabel(notes[0], x=0.01, ha="left", fontsize=9.0, color=style.GREY)
     return figure
+
+
+def _signals(result: SimulationResult) -> Iterator[_Row]:
+    """Force, and displacement where there is any, over the run and over its last revolutions."""
+    force, micrometres = result.units.force, result.units.instead_of("µm")
+    signals = [(f"force [{force.name}]", ("Fx", "Fy", "Fz"), result.force * force.factor)]
+    if result.displacement.any():
+        motion = result.displacement * result.units.displacement.factor
+        signals.append((f"displacement [{micrometres.name}]", ("x", "y", "z"), motion))
+    for label, names, values in signals:
+        shown = {"result": result, "values": values, "names": names, "label": label}
+        yield _Row(1.0, [partial(draw_run, **shown), partial(draw_last_revolutions, **shown)])
+
+
+def _frequency_and_section(result: SimulationResult) -> _Row:
+    panels = [partial(draw_spectrum, result=result)]
+    if result.displacement.any() and len(once_a_revolution(result)):
+        panels.append(partial(draw_poincare_section, result=result))
+    return _Row(1.15, panels, (1.7, 1.0))
+
+
+def _workpiece_or_surface(result: SimulationResult) -> _Row:
+    """Layers of a workpiece, the course of a program, or the wall and the profiles there are."""
+    panels: list[Callable[[Axes], None]] = []
+    if _shows_workpiece(result):
+        layers = sorted({0, len(result.setup.slices.height) - 1})
+        panels = [partial(_draw_layer, result=result, layer=layer) for layer in layers]
+    elif isinstance(result.setup.path, ToolCourse):
+        panels = [partial(draw_course, result=result), partial(draw_feed, result=result)]
+    else:
+        if result.finish.walls:
+            panels.append(partial(draw_wall, result=result))
+        if result.finish.walls or result.finish.floor is not None:
+            panels.append(partial(draw_profiles, result=result))
+    return _Row(1.15, panels)
+
+
+def _draw_layer(axes: Axes, result: SimulationResult, layer: int) -> None:
+    height = result.units.length.text(result.setup.slices.height[layer], ".2g")
+    axes.set_title(f"workpiece {height} above the tip", **style.TITLE)
+    draw_workpiece(axes, result, layer)
 
 
 def draw_course(axes: Axes, result: SimulationResult) -> None:
@@ -171,7 +202,7 @@ def draw_run(
             axes.plot(turns, values[:, axis], color=colour, linewidth=0.8, label=name)
     axes.set(xlim=(0.0, max(result.revolutions, 1e-9)), xlabel="spindle revolutions", ylabel=label)
     if not values.any():
-        _say(axes, "nothing moves")
+        _say(axes, "no force")
     band = "whole run, by revolution" if banded else "whole run"
     axes.set_title(band, **style.TITLE)
     style.finish(axes)
@@ -193,7 +224,7 @@ def draw_last_revolutions(
         axes.set_xlim(turns[first], turns[-1])
     axes.set(xlabel="spindle revolutions", ylabel=label)
     if not values.any():
-        _say(axes, "nothing moves")
+        _say(axes, "no force")
     axes.set_title("last revolutions", **style.TITLE)
     style.finish(axes)
     _legend(axes)
@@ -306,10 +337,6 @@ def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     axes.set(xlabel=f"{'xyz'[plane[0]]} [{unit}]", ylabel=f"{'xyz'[plane[1]]} [{unit}]")
     style.finish(axes)
     points = once_a_revolution(result, plane) * factor
-    if not result.setup.modes or len(points) == 0:
-        text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
-        _say(axes, text)
-        return
     half = len(points) // 2
     orbit = result.displacement[result.settled][:, plane] * result.units.displacement.factor
     axes.plot(*orbit.T, color="#C9D6DF", linewidth=0.5, zorder=1)
@@ -344,11 +371,7 @@ def draw_wall(axes: Axes, result: SimulationResult) -> None:
     axes.set_title("wall, deviation (positive: too much removed)", **style.TITLE)
     length, small = result.units.length, result.units.displacement
     axes.set(xlabel=f"feed [{length.name}]", ylabel=f"height [{length.name}]")
-    walls = result.finish.walls
-    if not walls:
-        _say_why_not(axes, result)
-        return
-    wall = walls[0].profiles
+    wall = result.finish.walls[0].profiles
     x, deviation = wall.x * length.factor, wall.deviation * small.factor
     low, high = np.percentile(deviation, [0.5, 99.5])
     least = _LEAST_SHOWN * small.factor
@@ -377,9 +400,6 @@ def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     finish, units = result.finish, result.units
     axes.set_xlabel(f"feed from the start of what is evaluated [{units.length.name}]")
     axes.set_ylabel(f"material left [{units.instead_of('µm').name}]")
-    if not finish.walls and finish.floor is None:
-        _say_why_not(axes, result)
-        return
     shown = _PROFILE_TURNS * result.case.tool.teeth * result.case.cut.feed_per_tooth
     for wall, colour in zip(finish.walls, (style.BLUE, style.ORANGE), strict=False):
         middle = wall.profiles.deviation[len(wall.profiles.height) // 2]
@@ -424,12 +444,6 @@ def _wall_label(wall: WallFinish, units: UnitSystem) -> str:
         f"Rz {of_rough.text(rough.depth, '.3g')}, "
         f"location error {wall.location_error * small.factor:+.3g} {units.instead_of('µm').name}"
     )
-
-
-def _say_why_not(axes: Axes, result: SimulationResult) -> None:
-    style.finish(axes)
-    notes = result.finish.notes
-    _say(axes, notes[0].replace(": ", ":\n") if notes else "not evaluated")
 
 
 def _say(axes: Axes, text: str) -> None:
