@@ -15,6 +15,9 @@ from chatter.plots import style
 if TYPE_CHECKING:
     from chatter.assembly.assemble import Assembly
 
+#: stick-outs in the legend, beside the best one: as many as the height of the axes holds
+_MOST_NAMED = 12
+
 
 def plot_assembly(assembly: Assembly) -> Figure:
     """Draw the tool point at each stick-out; with a case also its lobes and removal rates."""
@@ -31,18 +34,24 @@ def plot_assembly(assembly: Assembly) -> Figure:
 
 
 def _draw_receptance(axes: Axes, assembly: Assembly) -> None:
+    count = assembly.stick_out.size
+    named = {*np.linspace(0, count - 1, min(count, _MOST_NAMED)).round(), assembly.best}
     for k, colour, width in _looks(assembly):
         axes.semilogy(
             assembly.frequency,
             1e6 * np.abs(assembly.receptance[k]),
             color=colour,
             linewidth=width,
-            label=f"{1e3 * assembly.stick_out[k]:.4g} mm",
+            label=f"{1e3 * assembly.stick_out[k]:.4g} mm" if k in named else None,
         )
     axes.set(xlabel="frequency [Hz]", ylabel="receptance at the tool point [um/N]")
     axes.set_title(assembly.file.title or assembly.file.name)
     style.finish(axes)
-    axes.legend(title="stick-out", fontsize=7, title_fontsize=8, loc="upper right", ncols=2)
+    # beside the axes: responses fill them, and a peak may be anywhere
+    axes.legend(
+        title="stick-out", fontsize=7, title_fontsize=8, loc="upper left",
+        bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0,
+    )  # fmt: skip
 
 
 def _draw_lobes(axes: Axes, assembly: Assembly) -> None:

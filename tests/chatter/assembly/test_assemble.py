@@ -18,6 +18,7 @@ from chatter.assembly.spindle import modelled_spindle
 from chatter.assembly.tool_point import Base, tool_point_receptance
 from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
+from chatter.plots.assembly import plot_assembly
 from dynamics.beam.element import Segment
 from dynamics.beam.shaft import BeamLine, Bearing
 from dynamics.receptance.coupling import Component, coupled
@@ -179,6 +180,25 @@ def test_one_point_behind_the_end_less_still_finds_the_peaks(tmp_path):
     peak = frequency[np.argmax(np.abs(found.receptance[1]))]
     assert peak == pytest.approx(frequency[np.argmax(direct)], rel=0.05)
     assert any("ruling mode" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("count", [3, 40])
+def test_the_legend_of_the_picture_hides_no_response(count, tmp_path):
+    """It lay over the peak of the tool, at the upper right."""
+    (tmp_path / "assembly.toml").write_text(ASSEMBLY.replace("count = 2", f"count = {count}"))
+    found = chatter.assemble(tmp_path / "assembly.toml")
+    figure = plot_assembly(found)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    box = axes.get_legend().get_window_extent()
+    assert not box.overlaps(axes.get_window_extent())
+    assert figure.bbox.contains(*box.min)
+    assert figure.bbox.contains(*box.max)
+    named = {text.get_text() for text in axes.get_legend().get_texts()}
+    best = f"{1e3 * found.stick_out[found.best]:.4g} mm"
+    assert {"30 mm", "44 mm", best} <= named
+    # the responses keep most of the width
+    assert axes.get_window_extent().width > 0.7 * figure.bbox.width
 
 
 def test_command_writes_what_it_says(tmp_path):
