@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,6 +20,7 @@ from chatter.description.units import rpm
 from chatter.description.usual_units import UsualUnit
 from chatter.plots import style
 from chatter.plots.depth_axis import ABOVE_CUT, end_of_depth_axis
+from chatter.stability.limit_curve import joined_limits
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
@@ -65,10 +67,11 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
 
 def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     """Draw critical depths, what is stable below them, and the operating point."""
-    x, top, limits = diagram.axis.values, _top(diagram), diagram.limits
+    drawn = _with_operating_limit(diagram)
+    x, top, limits = drawn.axis.values, _top(drawn), drawn.limits
     length = diagram.units.length
     unit, factor = length
-    _fill(axes, diagram, top)
+    _fill(axes, drawn, top)
     # where stable intervals come or go the limit jumps: no line across
     jumps = np.flatnonzero(np.diff([len(found) for found in limits.crossings])) + 1
     across = np.insert(x, jumps, x[jumps])
@@ -89,10 +92,11 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     if diagram.is_over_speed and diagram.method != "zero-order":
         zero_order = diagram.zero_order.critical_depth
         axes.plot(
-            x, np.where(np.isfinite(zero_order), zero_order, math.nan) * factor, color=style.GREY,
-            linewidth=1.0, linestyle=(0, (4, 2)), label=f"limit, {METHODS['zero-order'].label}",
+            diagram.axis.values, np.where(np.isfinite(zero_order), zero_order, math.nan) * factor,
+            color=style.GREY, linewidth=1.0, linestyle=(0, (4, 2)),
+            label=f"limit, {METHODS['zero-order'].label}",
         )  # fmt: skip
-    _hatch_what_is_not_certain(axes, diagram, top)
+    _hatch_what_is_not_certain(axes, drawn, top)
     none = np.isinf(limits.critical_depth)
     if none.any():
         searched = length.text(float(np.nanmax(diagram.max_depth)), ".3g")
@@ -120,6 +124,27 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     _name_sides(axes)
     axes.set(xlim=(x[0], x[-1]), ylim=(0.0, top * factor), ylabel=f"axial depth [{unit}]")
     style.finish(axes)
+
+
+def _with_operating_limit(diagram: StabilityDiagram) -> StabilityDiagram:
+    """Diagram that has the limits at the operating speed, between its own speeds, as well.
+
+    A line between few speeds would pass beside the limit that the operating point is judged by.
+    """
+    speeds, operating = diagram.limits.spindle_speed, diagram.operating
+    if operating is None:
+        return diagram
+    index = int(np.searchsorted(speeds, operating.spindle_speed[0]))
+    if index in (0, speeds.size) or np.isclose(speeds, operating.spindle_speed, rtol=1e-9).any():
+        return diagram
+    others = np.delete(np.arange(speeds.size + 1), index)
+    speeds = np.insert(speeds, index, operating.spindle_speed)
+    return replace(
+        diagram,
+        axis=replace(diagram.axis, values=rpm(speeds)),
+        limits=joined_limits(speeds, [(others, diagram.limits), (np.array([index]), operating)]),
+        max_depth=np.insert(diagram.max_depth, index, diagram.max_depth[index]),
+    )
 
 
 def _draw_across_jumps(axes: Axes, x: Array, crossings: Sequence[Array], jumps: Array) -> None:

@@ -82,6 +82,37 @@ def test_the_depth_axis_ends_a_little_above_the_lobes(over_width):
         assert highest < top <= 1.3 * highest
 
 
+def coarse(speed):
+    """Six speeds, and a cut at a speed in rpm."""
+    speeds = {"from": "1000 rpm", "to": "2000 rpm", "count": 6}
+    values = {"cut__cutting_speed": None, "cut__feed_rate": None, "cut__feed_per_tooth": "0.08 mm"}
+    values["cut__spindle_speed"] = f"{speed} rpm"
+    return cut(lobes__method="collocation", lobes__speeds=speeds, **values)
+
+
+def test_few_speeds_draw_the_limit_that_the_words_name():
+    """Twenty speeds: 2.93 mm at the operating speed in the picture, 2.453 mm in words."""
+    case = coarse(1353)
+    diagram = chatter.lobes(case)
+    axes = plot_limits(diagram).axes[0]
+    (curve,) = [one for one in axes.get_lines() if str(one.get_label()).startswith("limit, coll")]
+    wanted = 1e3 * chatter.check(case).critical_depth
+    assert np.interp(1353.0, *curve.get_data()) == pytest.approx(wanted, rel=1e-3)
+    x, y, kind = fill_of(axes)
+    column = kind[:, np.argmin(np.abs(x - 1353.0))]
+    assert y[column == 0].max() == pytest.approx(wanted, abs=2.0 * (y[1] - y[0]))
+    # the table and the other samples stay those of the speeds asked for
+    assert diagram.tables()["lobes"]["spindle_speed [rpm]"].values.size == 6
+    assert set(np.round(curve.get_xdata(), 6)) == {*range(1000, 2001, 200), 1353.0}
+
+
+@pytest.mark.parametrize("speed", [900, 1000, 1400, 2100])
+def test_no_limit_is_added_beside_the_speeds_or_at_one_of_them(speed):
+    axes = plot_limits(chatter.lobes(coarse(speed))).axes[0]
+    (curve,) = [one for one in axes.get_lines() if str(one.get_label()).startswith("limit, coll")]
+    assert curve.get_xdata().size == 6
+
+
 def test_a_cut_far_above_the_lobes_does_not_press_them_to_the_ground():
     """Lobes of 2 mm below a cut of 20 mm filled a tenth of the picture."""
     diagram = chatter.lobes(cut(cut__axial_depth="20 mm", lobes__depths={"to": "30 mm"}))
