@@ -25,9 +25,11 @@ WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
 #: fall of the sum of squares that a step must promise, over the mean square, so that a fit goes on:
-#: a sixth of a standard deviation of a parameter; share of what is above the noise on top, as the
-#: last digits of a model that misfits tell nothing; share of all of it where rough will do
-_SMALLEST_GAIN, _SMALLEST_OF_MISFIT, _SMALLEST_OF_ROUGH = 0.03, 1e-4, 3e-3
+#: a sixth of a standard deviation of a parameter, and one where effects are told apart, which ask
+#: for eight; share of what is above the noise on top, as the last digits of a model that misfits
+#: tell nothing; share of all of it where rough will do
+_SMALLEST_GAIN, _SMALLEST_OF_NEAR = 0.03, 1.0
+_SMALLEST_OF_MISFIT, _SMALLEST_OF_ROUGH = 1e-4, 3e-3
 #: step, in sizes, below which a fit has converged
 _SMALLEST_STEP = 1e-5
 #: widest step, in sizes, at first; shares of what was promised below and above which it narrows and
@@ -236,11 +238,14 @@ class _Scaled:
         """Sum of squares of the residuals, and of what the priors add."""
         return float(residuals @ residuals + self.held @ scaled**2)
 
-    def negligible(self) -> float:
-        """Fall of the sum of squares for which a further step does not pay."""
+    def negligible(self, smallest: float) -> float:
+        """Fall of the sum of squares for which a further step does not pay.
+
+        The smallest is that over the mean square where no misfit is on top.
+        """
         count = max(self.now.size, 1)
         above = max(self.cost - count, 0.0)
-        return _SMALLEST_GAIN * self.cost / count + _SMALLEST_OF_MISFIT * above
+        return smallest * self.cost / count + _SMALLEST_OF_MISFIT * above
 
     @property
     def normal(self) -> Matrix:
@@ -314,12 +319,37 @@ def fit(
     to value nearly as the residuals do, for less; finite differences are theirs.
     """
     problem = _Scaled(parameters, residuals, coarse, jacobian)
+    return _fit_until(problem, parameters, start, lambda: problem.negligible(_SMALLEST_GAIN))
+
+
+def near_fit(
+    parameters: Sequence[Parameter],
+    residuals: Residuals,
+    start: Vector,
+    jacobian: Matrix | None = None,
+    coarse: Residuals | None = None,
+) -> Fit:
+    """Fit as `fit` does, to within a standard deviation: near enough to tell effects apart.
+
+    Where the sum of squares is rough, most steps of a fit are for less.
+    """
+    problem = _Scaled(parameters, residuals, coarse, jacobian)
+    return _fit_until(problem, parameters, start, lambda: problem.negligible(_SMALLEST_OF_NEAR))
+
+
+def _fit_until(
+    problem: _Scaled,
+    parameters: Sequence[Parameter],
+    start: Vector,
+    negligible: Callable[[], float],
+) -> Fit:
+    """Fit until a step promises no more than what is negligible."""
     problem.begin(problem.scaled(start))
-    most = _followed(problem, _MOST_STEPS, problem.negligible)
+    most = _followed(problem, _MOST_STEPS, negligible)
     while problem.updates > 1 and most > 0:
         # what no longer gains by a Jacobian brought up to date may by differences
         problem.take_differences()
-        most = _followed(problem, most, problem.negligible)
+        most = _followed(problem, most, negligible)
     return _fit_at(problem, parameters)
 
 

@@ -74,7 +74,7 @@ def learnt(problem: Problem, now: Fit, split: Split, progress: Progress) -> Lear
     if not terms:
         return None
     progress("fitting the empirical terms to all runs", 0.95)
-    final = problem.fit(problem.measurement.runs, now.by_name)
+    final = problem.final_fit(problem.measurement.runs, now.by_name)
     return Learnt(
         tuple(terms),
         problem.case(final.by_name),

@@ -13,7 +13,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import Fit, Parameter, Residuals, fit, rough_fit
+from chatter.explain.fitting import Fit, Parameter, Residuals, fit, near_fit, rough_fit
 from chatter.explain.kinds.kind import Kind, Noise, Signals
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -150,12 +150,16 @@ class Problem:
         start: Mapping[str, float],
         jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
-        """Fit everything to runs.
+        """Fit everything to runs, near enough to tell effects apart.
 
         From values by name, declared ones where they are not named, with a Jacobian (n, p) near the
         start where it is known.
         """
-        return self._fit_by(fit, runs, start, jacobian)
+        return self._fit_by(near_fit, runs, start, jacobian)
+
+    def final_fit(self, runs: Sequence[Run], start: Mapping[str, float]) -> Fit:
+        """Fit everything to runs as `fit` does, to within a sixth of a standard deviation."""
+        return self._fit_by(fit, runs, start, None)
 
     def rough_fit(
         self,

@@ -147,7 +147,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
         path, final = _without_nothing(path, final, split)
     path = stages_of_kept_effects(path, split)
     shown = kind.with_filter_by(measurement, path.problem.case(path.now.by_name))
-    base = replace(path.problem, effects=()).fit(shown.runs, base_values)
+    base = replace(path.problem, effects=()).final_fit(shown.runs, base_values)
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base
     )
@@ -196,7 +196,7 @@ def _to_all_runs(path: Path, split: Split, progress: Progress) -> tuple[Path, Sp
 
 def _of_all_runs(path: Path) -> Fit:
     runs = path.problem.measurement.runs
-    final = path.problem.fit(runs, path.now.by_name)
+    final = path.problem.final_fit(runs, path.now.by_name)
     return over_groups(final, [path.problem.count([run]) for run in runs])
 
 

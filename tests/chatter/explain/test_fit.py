@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from chatter.description.case import loads
-from chatter.explain.fitting import KnownByFactor, Parameter, fit, with_priors, within_reach
+from chatter.explain.fitting import (
+    KnownByFactor,
+    Parameter,
+    fit,
+    near_fit,
+    with_priors,
+    within_reach,
+)
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -37,6 +44,24 @@ def test_a_fit_goes_on_where_several_steps_are_too_long():
         np.array([2.0]),
     )
     assert found.values[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_near_fit_ends_within_a_standard_deviation_and_a_fit_goes_on():
+    """Steps halve x where residuals grow with its square; the least sum is that of the noise."""
+    noise = np.tile([1.0, -1.0], 50)
+    least, asked = noise @ noise, {near_fit: 0, fit: 0}
+    above = {}
+    for method in asked:
+
+        def residuals(x, method=method):
+            asked[method] += 1
+            return noise + x[0] ** 2
+
+        found = method([Parameter("x", 4.0, 1.0, prior=False)], residuals, np.array([4.0]))
+        above[method] = found.cost - least
+    assert 0.03 < above[near_fit] < 1.0
+    assert above[fit] < 0.03
+    assert asked[near_fit] < asked[fit]
 
 
 def test_a_value_known_by_a_factor_is_pulled_by_its_logarithm():
