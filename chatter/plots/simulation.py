@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
 
 _TURN = 2.0 * math.pi
-#: of a row of panels of the height 1, inches
-_HEIGHT = 2.8
+#: of a row of panels of the height 1, inches: of all rows twelve
+_HEIGHT = 12.0 / 4.3
 _COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 #: revolutions, or groups of them, that show a whole run as a band
 _LEAST_BANDS, _MOST_BANDS = 16, 400
