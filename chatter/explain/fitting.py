@@ -25,7 +25,7 @@ WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
 #: fall of the sum of squares that a step must promise, over the mean square, so that a fit goes on:
-#: a sixth of a standard deviation of a parameter, and one where effects are told apart, which ask
+#: a sixth of a standard deviation of a parameter, and one where effects are compared, which asks
 #: for eight; share of what is above the noise on top, as the last digits of a model that misfits
 #: tell nothing; share of all of it where rough will do
 _SMALLEST_GAIN, _SMALLEST_OF_NEAR = 0.03, 1.0
@@ -329,7 +329,7 @@ def near_fit(
     jacobian: Matrix | None = None,
     coarse: Residuals | None = None,
 ) -> Fit:
-    """Fit as `fit` does, to within a standard deviation: near enough to tell effects apart.
+    """Fit as `fit` does, to within a standard deviation: near enough to compare effects.
 
     Where the sum of squares is rough, most steps of a fit are for less.
     """

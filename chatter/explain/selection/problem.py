@@ -150,7 +150,7 @@ class Problem:
         start: Mapping[str, float],
         jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
-        """Fit everything to runs, near enough to tell effects apart.
+        """Fit everything to runs, near enough to compare effects.
 
         From values by name, declared ones where they are not named, with a Jacobian (n, p) near the
         start where it is known.
