@@ -13,8 +13,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import REFITTED_WITHIN
-from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import FREE_SIZES, Parameter
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -47,82 +46,8 @@ _LEAST_OF_PROMISE, _LEAST_HOPED = 0.5, 1.0
 #: steps tried at the most, without those of finite differences; where rough will do; those that
 #: fail one after the other, by new differences
 _MOST_STEPS, _MOST_ROUGH_STEPS, _MOST_FAILED = 30, 8, 6
-#: standard deviation, in sizes, of a parameter that has no declared value and begins at nothing:
-#: of values that the data do not tell apart, the smallest
-FREE_SIZES = 30.0
 #: groups from which a scatter between them can be told
 _LEAST_GROUPS = 4
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A number that is fitted."""
-
-    name: str  # path in the case, or name within an effect
-    start: float  # SI
-    size: float  # standard deviation of the prior, or a typical size where there is none
-    lower: float = -np.inf
-    upper: float = np.inf
-    prior: bool = True  # whether the start is a declared value with a standard deviation
-    unit: str = ""  # SI unit, for reports
-
-    @property
-    def weight(self) -> float:
-        """Weight of the row that holds it near its start; 0 where nothing does."""
-        if self.prior:
-            return 1.0
-        return 1.0 / FREE_SIZES if self.start == 0.0 else 0.0
-
-    def counted(self, value: float) -> float:
-        """Distance of a value from the start, in sizes."""
-        return (value - self.start) / self.size
-
-    def value(self, counted: float) -> float:
-        """Value at a distance from the start that is counted in sizes."""
-        return self.start + counted * self.size
-
-    def per_size(self, counted: float) -> float:  # noqa: ARG002
-        """Change of the value with a size, at a distance from the start."""
-        return self.size
-
-    def moved(self, value: float, change: float) -> float:
-        """Value that is so many sizes away from another, within the bounds."""
-        return float(np.clip(self.value(self.counted(value) + change), self.lower, self.upper))
-
-    def slope(self, value: float) -> float:
-        """Change of the value with a size, where it is so large."""
-        return self.per_size(self.counted(value))
-
-
-@dataclass(frozen=True)
-class KnownByFactor(Parameter):
-    """A positive number that is known by a factor, 1 + size/start, up or down.
-
-    Its logarithm scatters: twice as much as declared is as far as half of it.
-    """
-
-    @property
-    def _unit_of_logarithm(self) -> float:
-        return math.log1p(self.size / self.start)
-
-    def counted(self, value: float) -> float:
-        """Logarithm of the factor, in that of the declared one."""
-        if value <= 0.0:
-            return -math.inf
-        return math.log(value / self.start) / self._unit_of_logarithm
-
-    def value(self, counted: float) -> float:
-        """Value at so many factors."""
-        return self.start * np.exp(counted * self._unit_of_logarithm)
-
-    def per_size(self, counted: float) -> float:
-        """Change of the value with a factor more."""
-        return self.value(counted) * self._unit_of_logarithm
-
-
-def by_factor(one: Parameter) -> KnownByFactor:
-    """Return a positive parameter as known by a factor."""
-    return KnownByFactor(one.name, one.start, one.size, one.lower, one.upper, one.prior, one.unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,6 +115,56 @@ class Fit:
         return max(middle - half, parameter.lower), min(middle + half, parameter.upper)
 
 
+@dataclass(frozen=True)
+class LeastSquares:
+    """Parameters (p,), and residuals (n,) of them that are scaled to a standard deviation of one.
+
+    Coarse residuals differ from value to value nearly as the residuals do, for less; finite
+    differences are theirs. A fit begins at values (p,) in SI, with a Jacobian (n, p) near them, per
+    size of a parameter, where it is known.
+    """
+
+    parameters: Sequence[Parameter]
+    residuals: Residuals
+    coarse: Residuals | None = None
+
+    def fit(self, start: Vector, jacobian: Matrix | None = None) -> Fit:
+        """Fit to within a sixth of a standard deviation of the best."""
+        return self._fit_within(_SMALLEST_GAIN, start, jacobian)
+
+    def near_fit(self, start: Vector, jacobian: Matrix | None = None) -> Fit:
+        """Fit to within a standard deviation: near enough to compare effects.
+
+        Where the sum of squares is rough, most steps of a fit are for less.
+        """
+        return self._fit_within(_SMALLEST_OF_NEAR, start, jacobian)
+
+    def rough_fit(self, start: Vector, jacobian: Matrix | None = None) -> Fit:
+        """Fit as far as the Jacobian near the start leads when brought up to date.
+
+        Near enough to rank candidates by, at a fraction of the simulations.
+        """
+        search = _Scaled(self, jacobian)
+        search.begin(search.scaled(start))
+        _followed(search, _MOST_ROUGH_STEPS, lambda: _SMALLEST_OF_ROUGH * search.cost)
+        return _fit_at(search)
+
+    def _fit_within(self, smallest: float, start: Vector, jacobian: Matrix | None) -> Fit:
+        """Fit until a step promises no more than so much over the mean square."""
+        search = _Scaled(self, jacobian)
+
+        def negligible() -> float:
+            return search.negligible(smallest)
+
+        search.begin(search.scaled(start))
+        most = _followed(search, _MOST_STEPS, negligible)
+        while search.updates > 1 and most > 0:
+            # what no longer gains by a Jacobian brought up to date may by differences
+            search.take_differences()
+            most = _followed(search, most, negligible)
+        return _fit_at(search)
+
+
 class _Scaled:
     """Residuals and priors over scaled parameters, and their Jacobian.
 
@@ -198,15 +173,10 @@ class _Scaled:
     step gained less than most of what the Jacobian promised.
     """
 
-    def __init__(
-        self,
-        parameters: Sequence[Parameter],
-        residuals: Residuals,
-        coarse: Residuals | None,
-        jacobian: Matrix | None,
-    ) -> None:
-        self.residuals_of, self.coarse_of = residuals, coarse or residuals
-        self.parameters = parameters
+    def __init__(self, problem: LeastSquares, jacobian: Matrix | None) -> None:
+        self.residuals_of = problem.residuals
+        self.coarse_of = problem.coarse or problem.residuals
+        self.parameters = parameters = problem.parameters
         self.lower = self.scaled(np.array([one.lower for one in parameters]))
         self.upper = self.scaled(np.array([one.upper for one in parameters]))
         self.held = np.array([one.weight for one in parameters]) ** 2
@@ -305,83 +275,18 @@ class _Scaled:
         self.known, self.updates = known, 0
 
 
-def fit(
-    parameters: Sequence[Parameter],
-    residuals: Residuals,
-    start: Vector,
-    jacobian: Matrix | None = None,
-    coarse: Residuals | None = None,
-) -> Fit:
-    """Fit parameters to residuals that are scaled to a standard deviation of one.
-
-    Residuals make (n,) of the values (p,) in SI, as the start is. The Jacobian (n, p), near the
-    start, per size of a parameter, is given where it is known. Coarse residuals differ from value
-    to value nearly as the residuals do, for less; finite differences are theirs.
-    """
-    problem = _Scaled(parameters, residuals, coarse, jacobian)
-    return _fit_until(problem, parameters, start, lambda: problem.negligible(_SMALLEST_GAIN))
-
-
-def near_fit(
-    parameters: Sequence[Parameter],
-    residuals: Residuals,
-    start: Vector,
-    jacobian: Matrix | None = None,
-    coarse: Residuals | None = None,
-) -> Fit:
-    """Fit as `fit` does, to within a standard deviation: near enough to compare effects.
-
-    Where the sum of squares is rough, most steps of a fit are for less.
-    """
-    problem = _Scaled(parameters, residuals, coarse, jacobian)
-    return _fit_until(problem, parameters, start, lambda: problem.negligible(_SMALLEST_OF_NEAR))
-
-
-def _fit_until(
-    problem: _Scaled,
-    parameters: Sequence[Parameter],
-    start: Vector,
-    negligible: Callable[[], float],
-) -> Fit:
-    """Fit until a step promises no more than what is negligible."""
-    problem.begin(problem.scaled(start))
-    most = _followed(problem, _MOST_STEPS, negligible)
-    while problem.updates > 1 and most > 0:
-        # what no longer gains by a Jacobian brought up to date may by differences
-        problem.take_differences()
-        most = _followed(problem, most, negligible)
-    return _fit_at(problem, parameters)
-
-
-def rough_fit(
-    parameters: Sequence[Parameter],
-    residuals: Residuals,
-    start: Vector,
-    jacobian: Matrix | None = None,
-    coarse: Residuals | None = None,
-) -> Fit:
-    """Fit as `fit` does, as far as the Jacobian near the start leads when brought up to date.
-
-    Near enough to rank candidates by, at a fraction of the simulations.
-    """
-    problem = _Scaled(parameters, residuals, coarse, jacobian)
-    problem.begin(problem.scaled(start))
-    _followed(problem, _MOST_ROUGH_STEPS, lambda: _SMALLEST_OF_ROUGH * problem.cost)
-    return _fit_at(problem, parameters)
-
-
-def _followed(problem: _Scaled, most: int, negligible: Callable[[], float]) -> int:
+def _followed(search: _Scaled, most: int, negligible: Callable[[], float]) -> int:
     """Follow the trust region for so many steps at the most, and return how many are left.
 
     It ends where a step promises no more than what is negligible, or new differences do not help.
     """
     region, failed = _FIRST_REGION, 0
-    while most > 0 and problem.at.size:
-        step, promised = problem.step(region)
+    while most > 0 and search.at.size:
+        step, promised = search.step(region)
         if promised <= negligible():
             break
-        fresh = not problem.updates
-        gained = problem.tried(step, promised)
+        fresh = not search.updates
+        gained = search.tried(step, promised)
         most -= 1
         size = float(np.max(np.abs(step)))
         failed = failed + 1 if gained <= 0.0 and fresh else 0
@@ -391,18 +296,22 @@ def _followed(problem: _Scaled, most: int, negligible: Callable[[], float]) -> i
             region = _NARROWER * size
         elif gained > _WIDENS * promised and size > _AT_EDGE * region:
             region *= _WIDER
-        if gained <= 0.0 and problem.updates:
-            problem.take_differences()
+        if gained <= 0.0 and search.updates:
+            search.take_differences()
     return most
 
 
-def _fit_at(problem: _Scaled, parameters: Sequence[Parameter]) -> Fit:
+def _fit_at(search: _Scaled) -> Fit:
     """Fit with the covariance by the Jacobian that is known."""
-    inverse = np.linalg.pinv(problem.normal, hermitian=True)
-    values = problem.values(problem.at)
-    slopes = _slopes(parameters, values)
+    inverse = np.linalg.pinv(search.normal, hermitian=True)
+    values = search.values(search.at)
+    slopes = _slopes(search.parameters, values)
     return Fit(
-        tuple(parameters), values, inverse * np.outer(slopes, slopes), problem.known, problem.now
+        tuple(search.parameters),
+        values,
+        inverse * np.outer(slopes, slopes),
+        search.known,
+        search.now,
     )
 
 
@@ -436,64 +345,3 @@ def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
     own = np.maximum(np.diag(inverse), 1e-300)
     factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
     return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
-
-
-#: last key of a path -> relative standard deviation of a declared value
-TOLERANCES = {
-    "frequency": 0.02,
-    "damping": 0.20,
-    "mass": 0.08,
-    "stiffness": 0.10,
-    "Ktc": 0.10,
-    "Krc": 0.10,
-    "Kac": 0.10,
-    "Kte": 0.15,
-    "Kre": 0.15,
-    "Kae": 0.15,
-    "coefficient": 0.20,
-    "offset": 0.20,
-    "moving_mass": 0.10,
-    "viscous_friction": 0.15,
-    "coulomb_friction": 0.10,
-}
-_OTHERS = 0.05
-
-
-def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Parameter]:
-    """Declared values as parameters with a prior.
-
-    The standard deviation is that of the measurement's [tolerance], by path or last key, or that
-    written in the case ("1650 +- 80 MPa"), or a few percent by the kind of value. A value that is
-    named in [tolerance] by its whole path, such as tool.helix, is one of them too.
-    """
-    declared = measurement.case.deviations()
-    found = []
-    named = [path for path in measurement.tolerances if "." in path]
-    for path in dict.fromkeys([*paths, *named]):
-        value = float(measurement.case.get(path))
-        key = path.rpartition(".")[2]
-        share = measurement.tolerances.get(path, measurement.tolerances.get(key))
-        if share is not None:
-            deviation = share * abs(value)
-        elif path in declared:
-            deviation = declared[path]
-        else:
-            deviation = TOLERANCES.get(key, _OTHERS) * abs(value)
-        if deviation > 0.0:
-            lowest = 0.02 * value if value > 0.0 else -np.inf
-            found.append(Parameter(path, value, deviation, lower=lowest))
-    return found
-
-
-def within_reach(parameters: Sequence[Parameter]) -> list[Parameter]:
-    """Declared values with bounds within which they are refitted.
-
-    Damping ratios are known by a factor: next to no damping is not as near as twice of it. With a
-    normal prior, fits to a real slot ended with a mode of a fiftieth of its declared damping.
-    """
-    found = []
-    for one in parameters:
-        known = by_factor(one) if one.name.endswith(".damping") and one.start > 0.0 else one
-        lowest = max(known.lower, known.value(-REFITTED_WITHIN))
-        found.append(replace(known, lower=lowest, upper=known.value(REFITTED_WITHIN)))
-    return found

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from chatter.explain.criteria import CONFOUNDED, NUMERICS, UNDETERMINED
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import FREE_SIZES, Fit, Parameter
+from chatter.explain.fitting import Fit
+from chatter.explain.parameters import FREE_SIZES, Parameter
 from chatter.explain.selection.candidates import Candidate, Stage
 from chatter.explain.selection.evidence import probabilities
 

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from chatter.explain.cutting_tests.priors import FREEDOM
 from chatter.explain.cutting_tests.wear import GradualWear, cut_times
-from chatter.explain.fitting import KnownByFactor, Parameter
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.stability import SCATTER
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import KnownByFactor, Parameter
 from chatter.explain.selection.problem import Problem
 
 Array = NDArray[np.float64]

@@ -12,7 +12,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.fitting import Fit, Parameter
+from chatter.explain.fitting import Fit
+from chatter.explain.parameters import Parameter
 from chatter.explain.selection.problem import Problem
 
 Array = NDArray[np.float64]

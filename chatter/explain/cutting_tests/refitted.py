@@ -8,7 +8,8 @@ import numpy as np
 import scipy
 
 from chatter.explain.cutting_tests.priors import declared, pulls
-from chatter.explain.fitting import Fit, Parameter
+from chatter.explain.fitting import Fit
+from chatter.explain.parameters import Parameter
 from chatter.explain.selection.problem import Problem
 
 #: tolerances by which a single declared value may be off

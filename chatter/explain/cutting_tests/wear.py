@@ -6,8 +6,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: typical growth of cutting and edge coefficients over all tests, and of process damping
 _CUTTING, _EDGE, _DAMPING = 0.2, 0.4, 1.0

@@ -8,8 +8,8 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free, polar
 from chatter.explain.effects.sines_of_position import LEAST_PERIOD, strongest_sines
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 
 #: speed below which an axis rests or creeps, m/s, and samples kept for which it does at the least:
 #: more than the low pass of the force spreads a jump over

@@ -15,9 +15,9 @@ from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.machine.machine_file import MachineFile
 from chatter.explain.effects.effect import Effect, Patch, Signals, Values, free
 from chatter.explain.effects.machine import MOST_AXES
-from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.drive import Drive
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 from chatter.explain.prediction import Predictions
 
 #: gaps that are tried, m

@@ -4,8 +4,8 @@ import math
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: reference thickness of the exponential law where the case has none, m
 _H0 = 1e-4

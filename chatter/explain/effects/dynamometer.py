@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 from chatter.simulation.simulate import through_resonance
 
 Array = NDArray[np.float64]

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 Values = Mapping[str, float]
 #: paths of a case -> values

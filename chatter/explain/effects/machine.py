@@ -11,8 +11,8 @@ from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.machine.drive import DriveSection
 from chatter.description.machine.machine_file import MachineFile
 from chatter.explain.effects.effect import Effect, Patch, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: joints, and axes, of which each may be the one
 _MOST_JOINTS, MOST_AXES = 24, 6

@@ -11,8 +11,8 @@ from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.machine_file import MachineFile
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
 from chatter.explain.effects.machine import MOST_AXES
-from chatter.explain.fitting import KnownByFactor, Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import KnownByFactor, Parameter
 
 #: friction that is tried at two parts, over that of typical ones: what holds at rest is sharp
 _SHARES, _VISCOUS_SHARE = (0.05, 0.3, 1.0, 2.0, 3.5, 6.0, 12.0), 0.05

@@ -12,8 +12,8 @@ from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free
 from chatter.explain.effects.resembling_modes import resembling_modes
 from chatter.explain.effects.structure import has_modes, stiffness_of
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: compliance of a mode that is not small, as a share of that of the most compliant known one
 _SIZABLE = 0.5

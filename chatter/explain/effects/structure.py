@@ -8,8 +8,8 @@ import numpy as np
 from chatter.compile.machine_cut import machine_cut
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: modes of which each may shift alone
 _MOST_MODES = 4

@@ -7,8 +7,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free, polar
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 #: directions within a pitch where teeth are not known, and offset, m, from which runout is sought
 _DIRECTIONS, _FIRST_OFFSET = 3, 5e-6

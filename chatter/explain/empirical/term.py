@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Values, free
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
+from chatter.explain.parameters import Parameter
 
 Array = NDArray[np.float64]
 

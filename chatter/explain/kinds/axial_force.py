@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from chatter.explain.data_checks.finding import NOTE, SignalFinding
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 
 #: scatter of the axial force over that of the forces in the plane of the cut, from which on it is
 #: more than what a dynamometer couples into it or noise

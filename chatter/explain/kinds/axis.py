@@ -10,11 +10,11 @@ from chatter.description.case import Case
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.motion import wrong_motion
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
-from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds import axis_record
 from chatter.explain.kinds.axis_record import AxisRecord
 from chatter.explain.kinds.kind import Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter, with_priors
 from chatter.explain.residuals.by_channel import by_channel
 from chatter.explain.residuals.over_runs import over_runs
 from chatter.explain.residuals.over_variable import over_period, over_variable

@@ -10,10 +10,10 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
-from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.frf import machine_paths
 from chatter.explain.kinds.kind import Array, Cuts, Kind, Signals, of_sections
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter, with_priors
 from chatter.explain.residuals.by_channel import by_channel
 from chatter.explain.residuals.over_variable import over_variable
 from chatter.explain.residuals.variables import AXIS_FORMS, AXIS_VARIABLES

@@ -19,11 +19,11 @@ from chatter.explain.criteria import (
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
-from chatter.explain.fitting import Parameter, with_priors, within_reach
 from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals, of_sections
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.same_case import OfSameCase
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter, with_priors, within_reach
 from chatter.explain.records.response_delay import without_delay
 from chatter.explain.records.response_scatter import repetitions_of, scatter
 from chatter.explain.residuals.over_lines import by_condition, over_lines

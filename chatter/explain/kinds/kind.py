@@ -21,9 +21,9 @@ from chatter.explain.criteria import (
     NUMERICS,
 )
 from chatter.explain.data_checks.finding import Check, SignalFinding
-from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.information import information_of_signals
+from chatter.explain.parameters import Parameter
 from chatter.explain.residuals.channel_residual import ChannelResidual, white_level
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.residual import Residual

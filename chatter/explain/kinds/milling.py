@@ -17,13 +17,13 @@ from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
-from chatter.explain.fitting import Parameter, with_priors, within_reach
 from chatter.explain.kinds.axial_force import (
     note_of_axial_coefficients,
     undeclared_axial_coefficients,
 )
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter, with_priors, within_reach
 from chatter.explain.records.anti_alias_filter import with_filter_by
 from chatter.explain.records.beginning import beginning_of
 from chatter.explain.records.description import ACCELERATION, REST

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.frf import FrequencyResponse
 from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.residual import Residual, over_noise

@@ -16,7 +16,6 @@ from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import has_power
 from chatter.explain.data_checks.power import wrong_powers
 from chatter.explain.data_checks.verdicts import wrong_verdicts
-from chatter.explain.fitting import Parameter, by_factor, with_priors
 from chatter.explain.kinds.kind import (
     Array,
     Cuts,
@@ -30,6 +29,7 @@ from chatter.explain.kinds.kind import (
 from chatter.explain.kinds.milling import cutting_paths, structural_paths
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.information import information_of_verdicts
+from chatter.explain.parameters import Parameter, by_factor, with_priors
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.misclassified_tests import misclassified, over_depth, over_speed
 from chatter.explain.stability_margin import (

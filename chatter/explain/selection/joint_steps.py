@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import Fit, Parameter
+from chatter.explain.fitting import Fit
+from chatter.explain.parameters import Parameter
 from chatter.explain.selection.linearised_step import WEAK_PRIOR, LinearisedStep
 
 #: pairs that are proposed at the most

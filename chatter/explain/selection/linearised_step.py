@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from chatter.explain.criteria import FOLLOWED_STARTS, SCREENED_STARTS
 from chatter.explain.effects.effect import Effect, Values
-from chatter.explain.fitting import WORKERS, Fit, Parameter
+from chatter.explain.fitting import WORKERS, Fit
 from chatter.explain.measurement import Run
+from chatter.explain.parameters import Parameter
 from chatter.explain.selection.problem import Problem
 
 #: finite difference and fractions of a linearised step, in units of a parameter's size

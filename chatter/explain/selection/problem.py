@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,9 +13,10 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import Fit, Parameter, Residuals, fit, near_fit, rough_fit
+from chatter.explain.fitting import Fit, LeastSquares, Residuals
 from chatter.explain.kinds.kind import Kind, Noise, Signals
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 from chatter.explain.prediction import Predictions
 
 
@@ -155,11 +156,11 @@ class Problem:
         From values by name, declared ones where they are not named, with a Jacobian (n, p) near the
         start where it is known.
         """
-        return self._fit_by(near_fit, runs, start, jacobian)
+        return self._least_squares(runs).near_fit(self._begin(start), jacobian)
 
     def final_fit(self, runs: Sequence[Run], start: Mapping[str, float]) -> Fit:
         """Fit everything to runs as `fit` does, to within a sixth of a standard deviation."""
-        return self._fit_by(fit, runs, start, None)
+        return self._least_squares(runs).fit(self._begin(start))
 
     def rough_fit(
         self,
@@ -168,7 +169,7 @@ class Problem:
         jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs near enough to rank candidates by."""
-        return self._fit_by(rough_fit, runs, start, jacobian)
+        return self._least_squares(runs).rough_fit(self._begin(start), jacobian)
 
     def part_of(self, found: Fit, runs: Sequence[Run], chosen: Sequence[Run]) -> Fit:
         """Return a fit to runs with the residuals of some of them alone."""
@@ -182,16 +183,10 @@ class Problem:
         """Return a fit to coarse predictions with the residuals of the predictions themselves."""
         return replace(found, residuals=self.residuals(found.by_name, runs))
 
-    def _fit_by(
-        self,
-        method: Callable[..., Fit],
-        runs: Sequence[Run],
-        start: Mapping[str, float],
-        jacobian: NDArray[np.float64] | None,
-    ) -> Fit:
+    def _least_squares(self, runs: Sequence[Run]) -> LeastSquares:
+        """Residuals of runs over the parameters; differences by what is predicted coarsely."""
         parameters = self.parameters()
         names = [one.name for one in parameters]
-        begin = np.array([start.get(one.name, one.start) for one in parameters])
 
         def residuals_of(chosen: Sequence[Run]) -> Residuals:
             def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -199,6 +194,8 @@ class Problem:
 
             return residuals
 
-        return method(
-            parameters, residuals_of(runs), begin, jacobian, residuals_of(self.coarse(runs))
-        )
+        return LeastSquares(parameters, residuals_of(runs), residuals_of(self.coarse(runs)))
+
+    def _begin(self, start: Mapping[str, float]) -> NDArray[np.float64]:
+        """Values at which a fit begins, declared ones where they are not named."""
+        return np.array([start.get(one.name, one.start) for one in self.parameters()])

@@ -6,16 +6,10 @@ import numpy as np
 import pytest
 
 from chatter.description.case import loads
-from chatter.explain.fitting import (
-    KnownByFactor,
-    Parameter,
-    fit,
-    near_fit,
-    with_priors,
-    within_reach,
-)
+from chatter.explain.fitting import LeastSquares
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import KnownByFactor, Parameter, with_priors, within_reach
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.other_starts import fit_from_elsewhere
 from chatter.explain.selection.problem import Problem
@@ -38,18 +32,20 @@ direction = [1, 0, 0]
 
 def test_a_fit_goes_on_where_several_steps_are_too_long():
     """An arctangent flattens so that linear steps from 40 widths away end far beyond it."""
-    found = fit(
+    problem = LeastSquares(
         [Parameter("x", 2.0, 1.0, prior=False)],
         lambda x: np.full(50, 20.0) * np.arctan(x[0] / 0.05),
-        np.array([2.0]),
     )
+    found = problem.fit(np.array([2.0]))
     assert found.values[0] == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_near_fit_ends_within_a_standard_deviation_and_a_fit_goes_on():
     """Steps halve x where residuals grow with its square; the least sum is that of the noise."""
     noise = np.tile([1.0, -1.0], 50)
-    least, asked = noise @ noise, {near_fit: 0, fit: 0}
+    least = noise @ noise
+    near, whole = LeastSquares.near_fit, LeastSquares.fit
+    asked = {near: 0, whole: 0}
     above = {}
     for method in asked:
 
@@ -57,11 +53,12 @@ def test_a_near_fit_ends_within_a_standard_deviation_and_a_fit_goes_on():
             asked[method] += 1
             return noise + x[0] ** 2
 
-        found = method([Parameter("x", 4.0, 1.0, prior=False)], residuals, np.array([4.0]))
+        problem = LeastSquares([Parameter("x", 4.0, 1.0, prior=False)], residuals)
+        found = method(problem, np.array([4.0]))
         above[method] = found.cost - least
-    assert 0.03 < above[near_fit] < 1.0
-    assert above[fit] < 0.03
-    assert asked[near_fit] < asked[fit]
+    assert 0.03 < above[near] < 1.0
+    assert above[whole] < 0.03
+    assert asked[near] < asked[whole]
 
 
 def test_a_value_known_by_a_factor_is_pulled_by_its_logarithm():
@@ -69,7 +66,7 @@ def test_a_value_known_by_a_factor_is_pulled_by_its_logarithm():
     one = KnownByFactor("x", 2.0, 0.4, 0.5, 8.0)
     unit = math.log(1.2)
     target = 2.0 * 1.2**2  # two factors up: known as well from both, it ends half way
-    found = fit([one], lambda x: np.log(x / target) / unit, np.array([2.0]))
+    found = LeastSquares([one], lambda x: np.log(x / target) / unit).fit(np.array([2.0]))
     assert found.values[0] == pytest.approx(2.0 * 1.2, rel=1e-4)
     assert found.pulls["x"] == pytest.approx(1.0, rel=1e-3)
     assert found.log_prior == pytest.approx(-0.5, rel=1e-3)

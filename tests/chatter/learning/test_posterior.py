@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.explain.fitting import Parameter
+from chatter.explain.parameters import Parameter
 from chatter.learning.diagram import ParticleDiagram
 from chatter.learning.next_cut import INFORMATION, METAL, expected_information, next_cut
 from chatter.learning.posterior import Particles, updated

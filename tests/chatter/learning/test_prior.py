@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy
 
-from chatter.explain.fitting import Parameter
+from chatter.explain.parameters import Parameter
 from chatter.learning.prior import Prior
 
 FREEDOM, SCALES = 4.0, np.geomspace(0.25, 2.0, 4)

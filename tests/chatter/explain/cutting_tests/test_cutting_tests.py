@@ -18,11 +18,11 @@ from chatter.explain.cutting_tests.refitted import Refitted, in_words
 from chatter.explain.cutting_tests.reliability import spread_of_margin
 from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import ChippedEdge, GradualWear, SaturatingWear
-from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.kinds.stability import Stability
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
+from chatter.explain.parameters import Parameter
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.problem import Problem
 from chatter.explain.stability_margin import CuttingTests, ResponseOfTests

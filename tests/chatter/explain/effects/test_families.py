@@ -22,7 +22,7 @@ from chatter.explain.effects.tool import (
     Wear,
     WearOfAll,
 )
-from chatter.explain.fitting import fit
+from chatter.explain.fitting import LeastSquares
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.reported_effects import parameters_of
 from chatter.explain.selection.evidence import probabilities, whittle, whittle_of_repeated
@@ -183,7 +183,7 @@ def test_two_teeth_show_the_difference_of_their_radii_alone():
         # next to nothing of the part across, as the model curves
         return np.full(400, 20.0 * (along - 11.5) + 1e-9 * across**2)
 
-    found = fit(parameters, residuals, np.zeros(2))
+    found = LeastSquares(parameters, residuals).fit(np.zeros(2))
     reported = parameters_of(found, effect)
     assert reported["offset"]["value"] == pytest.approx(11.5e-6, rel=0.01)  # the smallest
     low, high = reported["offset"]["ci95"]
@@ -312,7 +312,7 @@ def test_the_process_damping_of_a_heavy_slow_machine_is_known_as_well_as_that_of
     effect, true, deviation = ProcessDamping(), 1e7, 8e5
     (own,) = effect.parameters(SimpleNamespace(case=heavy))
     own = replace(own, name=f"{effect.name}.{own.name}")
-    found = fit([own], lambda values: (values - true) / deviation, np.zeros(1))
+    found = LeastSquares([own], lambda values: (values - true) / deviation).fit(np.zeros(1))
     reported = parameters_of(found, effect)["coefficient"]
     assert reported["value"] == pytest.approx(true, rel=0.02)
     assert reported["ci95"] == pytest.approx(
@@ -325,7 +325,7 @@ def test_the_power_and_the_mode_of_a_shift_are_chosen_and_have_no_interval():
     effect, true, deviation = ModeShiftOf(1, square=1), -0.12, 0.004
     (own,) = effect.parameters(SimpleNamespace(case=CASE))
     own = replace(own, name=f"{effect.name}.{own.name}")
-    found = fit([own], lambda values: (values - true) / deviation, np.zeros(1))
+    found = LeastSquares([own], lambda values: (values - true) / deviation).fit(np.zeros(1))
     reported = parameters_of(found, effect)
     assert (reported["power"]["value"], reported["power"]["ci95"]) == (2.0, None)
     assert (reported["mode"]["value"], reported["mode"]["ci95"]) == (2.0, None)

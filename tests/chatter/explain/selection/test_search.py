@@ -9,9 +9,9 @@ from chatter.description.case import loads
 from chatter.explain.effects import effect_list
 from chatter.explain.effects.axis import Asymmetry, Offset, QuadraticDrag
 from chatter.explain.effects.effect import free
-from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.parameters import Parameter
 from chatter.explain.prediction import Predictions
 from chatter.explain.records.steady_record import SteadyRecord
 from chatter.explain.selection import candidates
