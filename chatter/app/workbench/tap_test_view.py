@@ -7,14 +7,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import panel as pn
 import tomlkit
-from bokeh.models import ColumnDataSource, HoverTool, TapTool
-from bokeh.plotting import figure
 
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.modal_test_figures import ModalTestFigures
 from chatter.app.workbench.picture_files import picture
 from chatter.app.workbench.result_panel import CODE, downloads, table_buttons
 from chatter.app.workbench.session import Session, readable_extensions
@@ -24,18 +22,13 @@ from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.io.hammer_records import is_hammer_record
-from chatter.plots.modes import FRF_UNITS
 from chatter.studies.modal_test import ModalTest
 
-_TOOLS = "pan,box_zoom,wheel_zoom,reset"
-_WIDTH = 600
 _FIRST_STEP = (
     "Drop hammer records (force and response of each blow) or FRF files of one direction, then "
     "those of the next. Without any, begin in Case."
 )
 _HEADINGS = ("frequency [Hz]", "damping ratio", "mass [kg]", "fit error", "remark")
-#: poles that belong to one mode lie this close, as a share of the frequency
-_SAME_POLE = 0.005
 
 
 class TapTestView:
@@ -94,13 +87,7 @@ class TapTestView:
         for button in self.tables:
             button.disabled = True
         self._files = pn.FlexBox(min_width=860)
-        self.measured = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
-        self.fitted = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
-        self.coherence = ColumnDataSource({"f": [], "coherence": []})
-        self.behind = ColumnDataSource({"f": [], "magnitude": []})
-        self.diagram = ColumnDataSource({"f": [], "order": [], "damping": [], "colour": []})
-        self.chosen = ColumnDataSource({"xs": [], "ys": []})
-        self._figures = self._make_figures()
+        self.figures = ModalTestFigures()
         self._results = self._make_results()
         self.computations = Computations(lambda text: self._later(text))
         self.into_case.on_click(lambda _: self.put_into_case())
@@ -120,15 +107,15 @@ class TapTestView:
 
     def _make_results(self) -> pn.Column:
         """Pictures, modes and records; nothing is shown before the first fit."""
-        magnitude, phase, coherence, stabilisation = self._figures
+        drawn = self.figures
         return pn.Column(
             pn.Row(
                 pn.Column(
-                    picture(magnitude, "frf"), picture(phase, "phase"),
-                    picture(coherence, "coherence"),
+                    picture(drawn.magnitude, "frf"), picture(drawn.phase, "phase"),
+                    picture(drawn.coherence, "coherence"),
                 ),
                 pn.Column(
-                    picture(stabilisation, "stabilisation"),
+                    picture(drawn.stabilisation, "stabilisation"),
                     pn.Row(self.picked, self.automatic),
                     self.modes,
                     pn.Row(*self.tables),
@@ -241,26 +228,15 @@ class TapTestView:
             for mode in found
         ])  # fmt: skip
 
-    def pick(self, indices: list[int]) -> None:
-        """Pick poles of the stabilisation diagram by their place in it, as a click does."""
-        self.diagram.selected.indices = indices
-
     def fit_picked(self) -> None:
-        """Fit modes at the poles that are picked; several orders of one pole count once."""
-        indices = self.diagram.selected.indices
-        if not indices:
+        """Fit modes at the poles that are picked."""
+        poles = self.figures.picked_poles()
+        if not poles:
             self.message.object = (
                 "no pole is picked: click poles of the diagram, with shift several"
             )
             return
-        drawn = self.diagram.data
-        poles = sorted((drawn["f"][k], drawn["damping"][k]) for k in indices)
-        groups: list[list[tuple[float, float]]] = []
-        for pole in poles:
-            near = groups and pole[0] - groups[-1][-1][0] < _SAME_POLE * pole[0]
-            groups[-1].append(pole) if near else groups.append([pole])
-        means = [np.mean(group, axis=0) for group in groups]
-        self.fit([(float(f"{f:.7g}"), float(f"{d:.4g}")) for f, d in means])
+        self.fit(poles)
 
     def overrule(self, record: str, used: bool) -> None:
         """Use a record, or leave it out, whatever was found."""
@@ -372,8 +348,7 @@ class TapTestView:
             return
         self.test = test
         self._results.visible = True
-        self._draw_functions(test)
-        self._draw_diagram(test)
+        self.figures.draw(test)
         self._list_records(test)
         self.modes.object = as_html(self.mode_table())
         for button in self.tables:
@@ -382,52 +357,6 @@ class TapTestView:
         self._files.objects = downloads(folder)
         self.same_call.object = self._same_call(arguments)
         self.message.object = self._session.short("\n".join(test.notes))
-
-    def _draw_functions(self, test: ModalTest) -> None:
-        frf, model, band = test.fit.frfs[0], test.fit.models[0], test.fit.band
-        unit, factor = FRF_UNITS[frf.quantity]
-        inside = (frf.frequency > 0.0) & (frf.frequency <= 1.2 * band.highest)
-        f, values = frf.frequency[inside], frf.values[inside]
-        lines = np.linspace(band.lowest, band.highest, 2000)
-        fitted = model.values(lines)
-        self.measured.data = _function(f, values, factor)
-        self.fitted.data = _function(lines, fitted, factor)
-        shown = test.hammer.frf if test.hammer is not None else frf
-        known = shown.coherence is not None
-        self.coherence.data = {
-            "f": shown.frequency if known else [],
-            "coherence": shown.coherence if known else [],
-        }
-        magnitude, phase, coherence, _ = self._figures
-        magnitude.yaxis.axis_label = f"{frf.quantity} [{unit}]"
-        for one in (magnitude, phase, coherence):
-            one.x_range.update(start=float(f[0]), end=float(f[-1]))
-        size = np.abs(values[values != 0.0]) * factor
-        magnitude.y_range.update(start=0.5 * float(np.percentile(size, 1)), end=2.0 * size.max())
-
-    def _draw_diagram(self, test: ModalTest) -> None:
-        diagrams, band = test.fit.diagrams, test.fit.band
-        stable = np.concatenate([one.stable for one in diagrams])
-        order = np.concatenate([one.order for one in diagrams])
-        self.diagram.selected.indices = []
-        self.diagram.data = {
-            "f": np.concatenate([one.frequency for one in diagrams]),
-            "order": order,
-            "damping": np.concatenate([one.damping for one in diagrams]),
-            "colour": np.where(stable, "#0072B2", "#E69F00"),
-        }
-        top = float(order.max(initial=1)) + 2.0
-        self.chosen.data = {
-            "xs": [[mode.frequency] * 2 for mode in test.fit.identified],
-            "ys": [[0.0, top] for _ in test.fit.identified],
-        }
-        frf = test.fit.frfs[0].band(band.lowest, band.highest)
-        size = np.log10(np.maximum(np.abs(frf.values), 1e-300))
-        span = max(float(np.ptp(size)), 1e-9)
-        self.behind.data = {"f": frf.frequency, "magnitude": (size - size.min()) / span * top}
-        stabilisation = self._figures[-1]
-        stabilisation.x_range.update(start=band.lowest, end=band.highest)
-        stabilisation.y_range.update(start=0.0, end=top)
 
     def _list_records(self, test: ModalTest) -> None:
         """One line a file: used or not, and why."""
@@ -476,44 +405,6 @@ class TapTestView:
         told = self._session.short(text)
         self._show(lambda: setattr(self.message, "object", told))
 
-    def _make_figures(self) -> tuple[Any, Any, Any, Any]:
-        magnitude = figure(width=_WIDTH, height=290, y_axis_type="log", tools=_TOOLS,
-                           x_range=(0, 1), y_range=(0.1, 1))  # fmt: skip
-        phase = figure(width=_WIDTH, height=180, tools=_TOOLS, x_range=magnitude.x_range,
-                       y_range=(-190, 190))  # fmt: skip
-        coherence = figure(width=_WIDTH, height=160, tools=_TOOLS, x_range=magnitude.x_range,
-                           y_range=(0, 1.05))  # fmt: skip
-        for drawn, column, label in (
-            (magnitude, "magnitude", "FRF"), (phase, "phase", "phase [deg]"),
-        ):  # fmt: skip
-            drawn.line("f", column, source=self.measured, color="#888888", line_width=1.5,
-                       legend_label="measured")  # fmt: skip
-            drawn.line("f", column, source=self.fitted, color="#D55E00", legend_label="fitted")
-            drawn.yaxis.axis_label = label
-        phase.legend.visible = False
-        coherence.line("f", "coherence", source=self.coherence, color="#0072B2")
-        coherence.yaxis.axis_label = "coherence"
-        coherence.xaxis.axis_label = "frequency [Hz]"
-        return magnitude, phase, coherence, self._stabilisation_figure()
-
-    def _stabilisation_figure(self) -> Any:
-        drawn = figure(width=_WIDTH, height=330, x_range=(0, 1), y_range=(0, 1),
-                       tools=f"{_TOOLS},box_select")  # fmt: skip
-        drawn.line("f", "magnitude", source=self.behind, color="#BBBBBB")
-        drawn.multi_line("xs", "ys", source=self.chosen, color="#009E73", line_width=1.5,
-                         legend_label="modes")  # fmt: skip
-        poles = drawn.scatter(
-            "f", "order", source=self.diagram, size=6, color="colour", fill_alpha=0.5,
-            nonselection_alpha=0.35, selection_line_color="black", selection_line_width=2,
-        )  # fmt: skip
-        told = [("frequency", "@f{0.0} Hz"), ("damping ratio", "@damping{0.0000}"),
-                ("order", "@order")]  # fmt: skip
-        drawn.add_tools(TapTool(renderers=[poles]), HoverTool(renderers=[poles], tooltips=told))
-        drawn.xaxis.axis_label = "frequency [Hz]"
-        drawn.yaxis.axis_label = "model order"
-        drawn.title.text = "poles: blue stable, orange not; click picks one"
-        return drawn
-
 
 def _counted(files: int) -> str:
     return "1 file" if files == 1 else f"{files} files"
@@ -527,7 +418,3 @@ def _told_of_joining(dropped: set[str], before: frozenset[str]) -> str:
         f"{', '.join(sorted(dropped))}: judged together with the {_counted(len(before))} that lay "
         "here before. Untick what does not belong to this test, or remove all and drop anew."
     )
-
-
-def _function(f: Any, values: Any, factor: float) -> dict[str, Any]:
-    return {"f": f, "magnitude": np.abs(values) * factor, "phase": np.degrees(np.angle(values))}

@@ -298,9 +298,9 @@ def test_files_of_another_direction_are_taken_up_from_the_folder(tapped, tmp_pat
 
 def test_picked_poles_are_the_modes(tapped):
     view = tapped.tap_test
-    drawn = np.asarray(view.diagram.data["f"])
+    drawn = np.asarray(view.figures.diagram.data["f"])
     chosen = [CLOSE.modes[0][0], CLOSE.modes[2][0]]
-    view.pick([int(np.argmin(np.abs(drawn - f))) for f in chosen])
+    view.figures.pick([int(np.argmin(np.abs(drawn - f))) for f in chosen])
     view.fit_picked()
     assert view.computations.wait(PATIENCE)
     assert frequencies(view) == pytest.approx(chosen, rel=0.01)
