@@ -3,7 +3,7 @@
 Source of the layout: National Instruments, "Specification for the LabVIEW Measurement File (.lvm)".
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,8 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.io.files import read_lines
 from chatter.io.formats.format import Format
-from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.formats.frf_columns import frfs_of_tables
+from chatter.io.formats.records import of_file, only_record
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
 
@@ -38,11 +39,12 @@ class _Segment:
     values: Array  # (channels + 1, samples)
 
 
-def read_segments(path: Path) -> Table:
+def read_records(path: Path) -> Mapping[str, Table]:
     """Channels over time, or frequency; segments of the same channels one behind the other.
 
-    MeasurementError if the file is none of LabVIEW, cut short, or its segments or abscissas
-    differ; the message names file and line.
+    Where the time begins anew in a segment, every segment is a record. MeasurementError if the file
+    is none of LabVIEW, cut short, or its segments or abscissas differ; the message names file and
+    line.
     """
     lines = read_lines(path)
     if not lines[0].lstrip("\ufeff").startswith(_MAGIC):
@@ -60,12 +62,20 @@ def read_segments(path: Path) -> Table:
         raise MeasurementError(
             f"{path}: its {len(segments)} segments are of different channels; save one a file"
         )
-    values = np.concatenate([one.values for one in segments], axis=1)
-    if np.any(np.diff(values[0]) <= 0.0):
-        raise MeasurementError(
-            f"{path}: the {headings[0].split()[0]} does not rise over its {len(segments)} "
-            "segments: save one record a file"
-        )
+    whole = np.concatenate([one.values for one in segments], axis=1)
+    if np.all(np.diff(whole[0]) > 0.0):
+        return {"": _table(path, headings, whole)}
+    for number, one in enumerate(segments, start=1):
+        if np.any(np.diff(one.values[0]) <= 0.0):
+            raise MeasurementError(
+                f"{path}: the {headings[0].split()[0]} does not rise over segment {number} of "
+                f"{len(segments)}"
+            )
+    tables = (_table(path, headings, one.values) for one in segments)
+    return of_file(path, {f"segment {k}": one for k, one in enumerate(tables, start=1)})
+
+
+def _table(path: Path, headings: Sequence[str], values: Array) -> Table:
     return table_of(path, [Column(h, v) for h, v in zip(headings, values, strict=True)], "channels")
 
 
@@ -109,15 +119,24 @@ def _segment(path: Path, lines: Sequence[str], start: int, layout: _Layout) -> t
         for place in wanted:
             text = parts[place] if place < len(parts) else ""
             cells[place][row] = _number(path, index, text, layout)
-    units = properties.get("Y_Unit_Label", [])
+    units = _units(properties, places)
     headings = [
-        f"{names[place]} [{units[k]}]" if k < len(units) and units[k] else names[place]
-        for k, place in enumerate(places)
+        f"{names[place]} [{unit}]" if unit else names[place]
+        for place, unit in zip(places, units, strict=True)
     ]
     dimension = (properties.get("X_Dimension") or ["Time"])[0].lower()
     abscissa = _abscissa(path, start, cells, places, properties, layout)
     values = np.stack([abscissa, *(cells[place] for place in places)])
     return _Segment((_ABSCISSAS.get(dimension, dimension), *headings), values), stop
+
+
+def _units(properties: dict[str, list[str]], places: Sequence[int]) -> list[str]:
+    """Unit of each channel, empty where it has none."""
+    cells = properties.get("Y_Unit_Label", [])
+    # LabVIEW leaves the cells above further abscissas empty, other writers leave none
+    are_above = not any(cells[1 : places[-1] : 2])
+    chosen = [place - 1 if are_above else k for k, place in enumerate(places)]
+    return [cells[k] if k < len(cells) else "" for k in chosen]
 
 
 def _abscissa(
@@ -173,9 +192,11 @@ def _number(path: Path, index: int, text: str, layout: _Layout) -> float:
 LVM = Format(
     name="lvm",
     label="LVM of LabVIEW",
-    help="channels with their unit label; time of a column or of start and step",
+    help="channels with their unit label; time of a column or of start and step; segments of which "
+    "each begins anew are records",
     extensions=(".lvm",),
-    read_frfs=lambda path: frfs_of_table(read_segments(path)),
-    read_signals=read_segments,
+    read_frfs=lambda path: frfs_of_tables(read_records(path)),
+    read_signals=only_record(read_records),
+    read_records=read_records,
     recognises=lambda head: head.lstrip(b"\xef\xbb\xbf").startswith(_MAGIC.encode()),
 )

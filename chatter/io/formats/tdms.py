@@ -31,9 +31,9 @@ def read_records(path: Path) -> Tables:
         ) from error
     try:
         groups = {
-            group.name: [(_heading(one), one[:], _clock(one)) for one in group.channels()]
+            group.name: [(_heading(one), _values(one), _clock(one)) for one in channels]
             for group in TdmsFile.read(path).groups()
-            if group.channels()
+            if (channels := [one for one in group.channels() if _is_of_numbers(one)])
         }
     except Exception as error:  # whatever the library raises on a broken file
         raise MeasurementError(f"{path}: is no TDMS file that can be read: {error}") from error
@@ -51,6 +51,19 @@ def _table(path: Path, channels: list[tuple[str, Array, Array | None]]) -> Table
     if clock is not None and not has_time:
         columns.insert(0, Column("time [s]", clock))
     return table_of(path, columns, "channels")
+
+
+def _is_of_numbers(channel: Any) -> bool:
+    """Whether a channel is a signal, or its times; texts and empty channels are notes."""
+    return len(channel) > 0 and channel.dtype.kind in "iufM"
+
+
+def _values(channel: Any) -> Array:
+    """Samples of a channel; of dates, the seconds since the first."""
+    values = channel[:]
+    if channel.dtype.kind == "M":
+        return (values - values[0]) / np.timedelta64(1, "s")
+    return values
 
 
 def _heading(channel: Any) -> str:

@@ -10,6 +10,7 @@ import scipy.io
 from chatter.description.errors import InputError
 from chatter.io.formats.format_list import format_of
 from chatter.io.hammer_records import is_hammer_record, read_hammer_record
+from chatter.io.signals import read_signals
 from chatter.io.time_stamps import seconds_of
 from chatter.monitoring.recording_file import read_recording
 from chatter.studies.modal_test import modes
@@ -87,6 +88,54 @@ def test_units_that_labview_writes_out(tmp_path, unit):
     path.write_text(text, encoding="utf-8")
     record = read_hammer_record(path)
     np.testing.assert_allclose(record.force, FORCE / 1e3, atol=1e-9)
+
+
+@pytest.mark.parametrize("end", ["", "\t"])
+def test_units_of_lvm_with_a_time_for_each_channel_stand_above_their_channels(tmp_path, end):
+    """Properties as LabVIEW 8 wrote them: a cell for each abscissa, left empty."""
+    lines = ["LabVIEW Measurement", "Separator\tTab", "X_Columns\tMulti", "***End_of_Header***", ""]
+    lines += ["Channels\t3\t\t\t\t\t", f"Y_Unit_Label\tkN\t\tkN\t\tkN{end}", "***End_of_Header***"]
+    lines += ["X_Value\tFx\tX_Value\tFy\tX_Value\tFz\tComment"]
+    lines += ["0.0\t0.1\t0.0\t0.2\t0.0\t0.3", "0.5\t1.1\t0.5\t1.2\t0.5\t1.3"]
+    path = tmp_path / "cut.lvm"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    signals = read_signals(path)
+    assert signals["Fx"].tolist() == [100.0, 1100.0]
+    assert signals["Fy"].tolist() == [200.0, 1200.0]
+    assert signals["Fz"].tolist() == [300.0, 1300.0]
+
+
+def test_tdms_with_texts_and_empty_channels_beside_the_signals(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    path = tmp_path / "log.tdms"
+    clock = {"wf_increment": 1.0 / RATE}
+    with nptdms.TdmsWriter(path) as file:
+        file.write_segment(
+            [
+                nptdms.ChannelObject("Log", "Hammer", FORCE, {**clock, "unit_string": "N"}),
+                nptdms.ChannelObject("Log", "Acc", ACCELERATION, {**clock, "unit_string": "m/s^2"}),
+                nptdms.ChannelObject("Events", "Remark", np.array(["begin", "end"])),
+                nptdms.ChannelObject("Events", "Level", np.array([])),
+            ]
+        )
+    assert_is_the_record(read_hammer_record(path))
+
+
+def test_dates_of_tdms_are_a_time(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    path = tmp_path / "log.tdms"
+    begin = np.datetime64("2024-03-12T09:12:33", "us")
+    with nptdms.TdmsWriter(path) as file:
+        dates = begin + np.arange(4) * np.timedelta64(500, "us")
+        file.write_segment(
+            [
+                nptdms.ChannelObject("Log", "Time", dates),
+                nptdms.ChannelObject("Log", "Fx", np.arange(4.0), {"unit_string": "kN"}),
+            ]
+        )
+    signals = read_signals(path)
+    np.testing.assert_allclose(signals["time"], [0.0, 5e-4, 1e-3, 1.5e-3], atol=1e-9)
+    assert signals["Fx"].tolist() == [0.0, 1e3, 2e3, 3e3]
 
 
 def as_tdms(path, *groups, clock=None, unit="unit_string", time=False):

@@ -71,6 +71,24 @@ def as_tdms(path, names="Tap {}"):
     return path
 
 
+def as_lvm(path):
+    """Blows as LabVIEW appends them: a segment each, whose time begins anew."""
+    lines = [
+        "LabVIEW Measurement\t",
+        "Separator\tTab",
+        "X_Columns\tOne",
+        "***End_of_Header***\t",
+        "",
+    ]
+    for force, motion in BLOWS:
+        lines += ["Channels\t2\t\t\t", "Y_Unit_Label\tN\tm/s^2\t", "***End_of_Header***\t\t\t"]
+        lines += ["X_Value\tHammer\tAcc\tComment"]
+        lines += [f"{t:.9f}\t{f:.6f}\t{a:.6f}" for t, f, a in zip(TIME, force, motion, strict=True)]
+        lines += [""]
+    path.write_text("\r\n".join(lines), encoding="utf-8")
+    return path
+
+
 def as_structure_array(path):
     elements = np.empty((1, len(BLOWS)), dtype=[("force_N", object), ("acc_ms2", object)])
     for k, (force, motion) in enumerate(BLOWS):
@@ -136,6 +154,7 @@ def as_universal(path, order=("force", "acceleration")):
 WRITTEN = {
     "taps.xlsx": (as_workbook, ("Tap 1", "Tap 2", "Tap 3")),
     "taps.tdms": (as_tdms, ("Tap 1", "Tap 2", "Tap 3")),
+    "taps.lvm": (as_lvm, ("segment 1", "segment 2", "segment 3")),
     "array.mat": (as_structure_array, ("taps(1)", "taps(2)", "taps(3)")),
     "structures.mat": (as_structures, ("tap1", "tap2", "tap3")),
     "nested.mat": (as_structures_in_one, ("data.tap1", "data.tap2", "data.tap3")),
