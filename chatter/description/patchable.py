@@ -12,6 +12,7 @@ import tomlkit
 from pydantic import PrivateAttr, ValidationError
 
 from chatter.description.bare_numbers import give_bare_numbers_their_unit, refuse_bare_numbers
+from chatter.description.deviations import deviations_of
 from chatter.description.errors import InputError
 from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
@@ -21,7 +22,6 @@ from chatter.description.kinds_of_files import refuse_other_kind, with_article
 from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
     Step,
-    field_at,
     info_at,
     is_mapping,
     join_path,
@@ -29,13 +29,12 @@ from chatter.description.path import (
     model_at,
     parse_path,
 )
-from chatter.description.quantities import QuantityField
 from chatter.description.renamed import Renamed, rename, rename_patch
 from chatter.description.section import Section
 from chatter.description.stated_range import open_stated_ranges, ranges_spelt_out
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
-from chatter.description.units import DIMENSIONS, QuantityError, parse, write
+from chatter.description.unit_that_stands import in_unit_that_stands
 from chatter.description.whole_files import write_whole
 from chatter.description.wording import nearest, sentences, unknown_key
 
@@ -315,7 +314,7 @@ class Description(Section):
                 unknown += self._newly_made(data, steps)
                 given = ranges_spelt_out(type(self), steps, given)
                 said.append((steps, given))
-                given = self._in_given_unit(data, steps, given)
+                given = in_unit_that_stands(type(self), data, steps, given)
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))
             except InputError as error:
@@ -348,9 +347,7 @@ class Description(Section):
 
     def deviations(self) -> dict[str, float]:
         """Standard deviations (SI) of the values given as "1650 +- 80 MPa", by path."""
-        found: dict[str, float] = {}
-        self._collect_deviations(self._plain(), (), found)
-        return found
+        return deviations_of(type(self), self._plain())
 
     @property
     def stated(self) -> Mapping[str, Any]:
@@ -440,49 +437,6 @@ class Description(Section):
             return [f"{join_path(steps)}: there is no {join_path((*kind, name))}; {hint}"]
         return []
 
-    @classmethod
-    def _in_given_unit(cls, document: Any, steps: tuple[Step, ...], value: Any) -> Any:
-        """Write bare numbers in the unit of the text that they replace."""
-        field = field_at(cls, steps)
-        stands = value_at(document, tuple(0 if step == "*" else step for step in steps))
-        if field is None:
-            return value
-        if isinstance(value, list) and isinstance(stands, list) and len(value) == len(stands):
-            pairs = zip(value, stands, strict=True)
-            return [_like(entry, stood, field, steps) for entry, stood in pairs]
-        return _like(value, stands, field, steps)
-
-    @classmethod
-    def _collect_deviations(
-        cls, item: Any, steps: tuple[Step, ...], found: dict[str, float]
-    ) -> None:
-        if isinstance(item, dict):
-            for key, value in item.items():
-                cls._collect_deviations(value, (*steps, key), found)
-        elif isinstance(item, list):
-            for index, value in enumerate(item):
-                cls._collect_deviations(value, (*steps, index), found)
-        elif isinstance(item, str):
-            field = field_at(cls, steps)
-            if field is not None and (deviation := _deviation(item, field)) > 0.0:
-                found[join_path(steps)] = deviation
-
-
-def _unit_of(stands: str, field: QuantityField) -> str:
-    """Unit of a text; that of SI in the place of a share of another value, such as "8 %"."""
-    try:
-        return parse(stands, field.dimension).unit
-    except QuantityError:
-        return DIMENSIONS[field.dimension].unit
-
-
-def _deviation(item: str, field: QuantityField) -> float:
-    """Standard deviation (SI) of a quantity; 0 of a share of another value, such as "8 %"."""
-    try:
-        return parse(item, field.matching(item).dimension).deviation
-    except QuantityError:
-        return 0.0
-
 
 def copied(value: Any) -> Any:
     """Copy of nested tables and lists; what they hold is immutable."""
@@ -491,14 +445,3 @@ def copied(value: Any) -> Any:
     if isinstance(value, list):
         return [copied(entry) for entry in value]
     return value
-
-
-def _like(value: Any, stands: Any, field: Any, steps: tuple[Step, ...]) -> Any:
-    bare = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not bare or not isinstance(stands, str):
-        return value
-    try:
-        stood = field.matching(stands)
-        return write(stood.read(value), _unit_of(stands, stood), stood.dimension)
-    except ValueError as error:
-        raise InputError(f"{join_path(steps)}: {error}") from None
