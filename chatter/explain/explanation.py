@@ -43,7 +43,7 @@ from chatter.explain.residuals.residual_dependence import ResidualDependence
 from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.explain.selection.candidates import Candidate, Progress, Stage
 from chatter.explain.selection.discriminating_test import discriminating_test
-from chatter.explain.selection.search import Search, search
+from chatter.explain.selection.search import Search, judged_again, search
 from chatter.explain.verdict import COMPLETE, EXPLAINED, EXPLAINED_IN_PART, UNEXPLAINED, verdict_of
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
@@ -407,11 +407,23 @@ def _searched(
     found = searched(measurement, predictions, progress)
     if verdict_of(found) in COMPLETE:
         return measurement, found, []
-    case = found.problem.case(found.of_fitted.by_name)
-    fewer, slow = kind.without_too_slow(measurement, case)
-    if slow:
-        found = searched(fewer, predictions, progress)
+    fewer, slow = kind.without_too_slow(measurement, _case_found(found))
+    if not slow:
+        return measurement, found, []
+    found = searched(fewer, predictions, progress)
+    while verdict_of(found) not in COMPLETE:
+        # a case that was found without some runs may tell so of others
+        fewer, more = kind.without_too_slow(fewer, _case_found(found))
+        if not more:
+            break
+        slow = [*slow, *more]
+        found = judged_again(found, fewer, progress)
     return fewer, found, slow
+
+
+def _case_found(found: Search) -> Case:
+    """Case of a search, fitted to the runs for fitting."""
+    return found.problem.case(found.of_fitted.by_name)
 
 
 def _learnt(found: Search, verdict: str, progress: Progress) -> Learnt | None:

@@ -10,7 +10,14 @@ from chatter.explain.criteria import HOLDOUT_AT_NOISE, MOST_EFFECTS, NO_RESIDUAL
 from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
-from chatter.explain.selection.candidates import Progress, Stage, stage_of
+from chatter.explain.selection.candidates import (
+    Progress,
+    Stage,
+    fitted,
+    fitted_beside,
+    stage_of,
+    stage_with,
+)
 from chatter.explain.selection.established import (
     established_alone,
     is_established,
@@ -128,6 +135,42 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
         progress("trying again the effects added first", 0.85)
         path = tried_again(path, split)
     path, split = _gone_on_filtered(path, split, progress)
+    return _concluded(measurement, path, split, first, base_values, progress)
+
+
+def judged_again(found: Search, measurement: Measurement, progress: Progress) -> Search:
+    """Judge what a search found by fewer of its runs, without another search."""
+    names = {run.name for run in measurement.runs}
+    before = found.measurement
+    weighted = before.with_runs([run for run in before.runs if run.name in names])
+    split = split_runs(weighted)
+    problem = replace(found.problem, measurement=weighted)
+    now = problem.fit(split.fitted, found.of_fitted.by_name)
+    first = _tried_by(replace(problem, effects=()), found.first, split)
+    path = Path(list(found.accepted), problem, now)
+    return _concluded(measurement, path, split, first, found.base.by_name, progress)
+
+
+def _tried_by(problem: Problem, stage: Stage, split: Split) -> Stage:
+    """Stage with what it tried fitted to other runs."""
+    before = problem.fit(split.fitted, stage.before.by_name)
+    if not stage.tried:
+        return stage_with(problem, before, split, [])
+    own = fitted(problem, stage.best.effect, split, stage.best.fit.by_name)
+    others = [(one.effect, one.fit.by_name) for one in stage.tried[1:]]
+    tried = fitted_beside(problem, before, split, own, others)
+    return stage_with(problem, before, split, tried)
+
+
+def _concluded(
+    measurement: Measurement,
+    path: Path,
+    split: Split,
+    first: Stage,
+    base_values: Mapping[str, float],
+    progress: Progress,
+) -> Search:
+    """Fit a path to all runs, and keep of it what they ask for."""
     path, split, final = _to_all_runs(path, split, progress)
     if path.stages and not is_at_noise(path.problem, final):
         before, path = path, in_other_forms(path, split, progress)
@@ -146,7 +189,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     elif path.stages and reaches_nothing(path, final) is not None:
         path, final = _without_nothing(path, final, split)
     path = stages_of_kept_effects(path, split)
-    shown = kind.with_filter_by(measurement, path.problem.case(path.now.by_name))
+    shown = path.problem.kind.with_filter_by(measurement, path.problem.case(path.now.by_name))
     base = replace(path.problem, effects=()).final_fit(shown.runs, base_values)
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import pytest
 import tomlkit
 
 from chatter.description.case import load
 from chatter.description.errors import InputError
+from chatter.explain import explanation
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import Explanation, explain
 from chatter.explain.measurement_file import read_measurement
@@ -98,3 +100,31 @@ def test_a_missing_channel_is_told(tmp_path):
     (tmp_path / "a.csv").write_text(f"time [s],force [N]\n{rows}\n")
     with pytest.raises(InputError, match="position"):
         explain(read_measurement(tmp_path))
+
+
+def test_runs_are_left_out_until_the_case_found_leaves_out_no_more(monkeypatch):
+    """Without one run another search; what that finds stands, judged without further ones."""
+    found = SimpleNamespace(
+        problem=SimpleNamespace(case=lambda _: "case"), of_fitted=SimpleNamespace(by_name={})
+    )
+    searched, judged = [], []
+
+    def search(runs, *_):
+        searched.append(runs)
+        return found
+
+    def judged_again(_, runs, __):
+        judged.append(runs)
+        return found
+
+    def without_too_slow(runs, _):
+        return (runs[:-1], [runs[-1]]) if len(runs) > 2 else (runs, [])
+
+    monkeypatch.setattr(explanation, "search", search)
+    monkeypatch.setattr(explanation, "judged_again", judged_again)
+    monkeypatch.setattr(explanation, "verdict_of", lambda _: explanation.UNEXPLAINED)
+    kind = SimpleNamespace(name="milling", without_too_slow=without_too_slow)
+    left = explanation._searched((1, 2, 3, 4), SimpleNamespace(kind=kind), None)
+    assert left == ((1, 2), found, [4, 3])
+    assert searched == [(1, 2, 3, 4), (1, 2, 3)]
+    assert judged == [(1, 2)]

@@ -21,7 +21,7 @@ from chatter.explain.selection.joint_steps import joint_steps
 from chatter.explain.selection.linearised_step import linearised, promised_by_secants
 from chatter.explain.selection.path import Path
 from chatter.explain.selection.problem import Problem
-from chatter.explain.selection.search import search
+from chatter.explain.selection.search import judged_again, search
 from chatter.explain.selection.split import split_runs
 
 SAMPLES = 8000
@@ -118,6 +118,32 @@ def test_a_joint_step_promises_what_linear_models_give():
     assert pair.gain == pytest.approx(25.0 * count, rel=0.03)
     assert pair.alone < 0.01 * pair.gain
     assert pair.values["asymmetry.asymmetry"] == pytest.approx(1.0, abs=0.02)
+
+
+def test_what_was_found_is_judged_again_without_a_run_that_spoilt_it():
+    """A run of something else; the others are at the noise of one with the effect that is true."""
+    measurement = measured(unlike_shapes, (3.0, 0.0, 0.0), runs=8)
+    spoilt = measurement.runs[4]
+    other = 3.0 * np.random.default_rng(3).standard_normal(SAMPLES)
+    signals = {**spoilt.signals, "force": spoilt.signals["force"] + other}
+    runs = list(measurement.runs)
+    runs[4] = replace(spoilt, signals=signals)
+    found = found_in(measurement.with_runs(runs))
+    assert found.effect_names == ("asymmetry",)
+    assert not found.is_at_noise
+    fewer = measurement.with_runs(runs[:4] + runs[5:])
+    again = judged_again(found, fewer, lambda *_: None)
+    assert again.is_at_noise
+    assert again.effect_names == ("asymmetry",)
+    names = [run.name for part in again.split for run in part]
+    assert sorted(names) == sorted(run.name for run in fewer.runs)
+    # weight of 3 on 7 runs of unit shapes: its standard deviation is one over the root of all
+    deviation = (7 * SAMPLES) ** -0.5
+    assert again.final.by_name["asymmetry.asymmetry"] == pytest.approx(3.0, abs=4.0 * deviation)
+    # what was tried alone is judged by the same holdout runs: noise, and 9 without the effect
+    count = again.problem.count(again.split.holdout)
+    assert again.first.best.holdout == pytest.approx(count, rel=0.05)
+    assert again.first.holdout == pytest.approx(10.0 * count, rel=0.05)
 
 
 def test_what_holds_for_the_fitted_runs_alone_explains_nothing():
