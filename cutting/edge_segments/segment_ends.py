@@ -7,6 +7,10 @@ from numba.extending import register_jitable
 from cutting.compiled import INLINED
 from cutting.edge_segments.coupling import arc_at
 
+#: marks of the ends at which the engagement of an edge turns round: alone, and as one of many, a
+#: few to every wave of a serrated edge, none of which changes the force by much
+TURNING, WITHIN_WAVES = 1, 2
+
 
 @register_jitable(**INLINED)
 def lowest_height(segments):
@@ -24,7 +28,7 @@ def is_border(segments, segment, end, depth, lowest):
     At the lowest position that cuts, at the top of the cut, and where an edge meets the stock;
     elsewhere the segments of an edge continue one another.
     """
-    if segments.turning[segment, end] == 1:
+    if segments.turning[segment, end] >= TURNING:
         return True
     if end == 0:
         return segments.bottom[segment] <= lowest

@@ -25,6 +25,7 @@ from cutting.edge_segments.engagement_arcs import (
     segments_of_passes,
 )
 from cutting.edge_segments.inclined_edges import InclinedEdges
+from cutting.edge_segments.segment_ends import TURNING, WITHIN_WAVES
 from cutting.engagement.inclined_tool import InclinedEngagement
 from cutting.engagement.uncut_band import SLOT, UncutBand
 from cutting.force.law import ForceLaw, SlopePower
@@ -71,7 +72,9 @@ class EdgeSegments(NamedTuple):
     above_exponent: NDArray[np.float64]  # exponent of each direction above that (3,)
     directional: bool  # whether the three differ
     reference: float  # m
-    turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
+    #: `TURNING` where an edge first meets or last leaves the stock, `WITHIN_WAVES` where it does so
+    #: from wave to wave, else 0 (P, 2)
+    turning: NDArray[np.int64]
     outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
     first_of_group: NDArray[np.int64]  # first segment of each group, then their number (C + 1,)
     flank: LinearFlank
@@ -265,7 +268,8 @@ def turning_ends(segments: list[Segment], owners: list[Owner], serrated: bool) -
 
     There the spindle angle of entry or exit turns round along the edge, or the edge ends, or it
     is no more cut all around, or the surface of another earlier pass is the nearest from there on;
-    not along a serrated edge, on which that changes from wave to wave for a small part each.
+    not along a serrated edge, on which that changes from wave to wave for a small part each. Those
+    of a serrated edge are marked `WITHIN_WAVES`.
     """
     marks = np.zeros((len(segments), 2), dtype=np.int64)
     position = {owner: i for i, owner in enumerate(owners)}
@@ -287,4 +291,4 @@ def turning_ends(segments: list[Segment], owners: list[Owner], serrated: bool) -
             marks[i, 1] |= (
                 rise * ((next_one[1] - next_one[0]) - (next_angle[1] - next_angle[0])) < 0.0
             )
-    return marks
+    return marks * (WITHIN_WAVES if serrated else TURNING)

@@ -63,6 +63,12 @@ CUTS = {
              serration={"depth": "0.03 mm", "wavelength": "2 mm"}),
         TWO_MODES, ("down", 0.5), (3000, 4500), 4e-3, {},
     ),
+    "serrated, down-milling with a size effect": (
+        tool("end mill", 4, 20e-3, helix="30 deg",
+             serration={"depth": "0.3 mm", "wavelength": "2.5 mm"}),
+        [mode(650.0, 0.03, 5e6, [1, 0, 0]), mode(680.0, 0.03, 5e6, [0, 1, 0])],
+        ("down", 0.3), (3400, 6160), 9e-3, {"material": EXPONENTIAL},
+    ),
     "lag of more than a pitch": (
         tool("end mill", 3, 6e-3, helix="55 deg"), TWO_MODES, ("up", 0.2),
         (3000, 7000, 12000, 19000), 15e-3, {},

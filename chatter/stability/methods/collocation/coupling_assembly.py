@@ -46,7 +46,8 @@ from cutting.edge_segments.coupling import part_below, radius_at
 from cutting.edge_segments.engaged_intervals import bounds_of_groups, reach_of_segment
 from cutting.process_damping.linear_flank import inverse_radius
 
-#: the order of a quadrature along the edge follows the speed in steps of this power of two
+#: the order of a quadrature along the edge follows the speed in steps of this power of two, where
+#: delays vary along it
 _SPEED_STEP = 0.5
 
 
@@ -72,7 +73,8 @@ def assemble_couplings(cut, rotation, layout, positions, speed, depth, scratch):
     """Couplings at the points of all elements of a period.
 
     The rotation is in mean angle, the `Positions` are those of the layout, the speed is the
-    `speed_step` of the mean spindle speed, rad/s, the depth axial, m. Returned are the `Couplings`,
+    `speed_step` of the mean spindle speed, rad/s, or inf where no delay varies along the edge, the
+    depth axial, m. Returned are the `Couplings`,
     the first source (E p + 1,) of each point, and the `Sources`, for which the scratch is used.
     """
     delays, rank = cut.arrays.segments.distinct_delay.shape[0], cut.arrays.basis.shape[1]
@@ -117,6 +119,7 @@ def coupling_assemblies(cut, speeds, depths):
     rotation, period = STEADY_ROTATION, arrays.period_angle
     counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
     rank, per_element = arrays.basis.shape[1], cut.points.weight.shape[0]
+    varying = np.any(arrays.segments.delay_index < 0)
     positions, sources = empty_positions(), empty_sources(1, rank, (per_element + 1) * rank)
     for i in range(speeds.shape[0]):
         if not constant:
@@ -130,7 +133,7 @@ def coupling_assemblies(cut, speeds, depths):
             borders = period_borders(arrays.segments, period, depths[i])
             kept = not constant and same_borders(borders, before)
         needed = element_counts(cut, borders, rotation, speeds[i], depths[i])
-        resolved = speed_step(speeds[i], _SPEED_STEP)
+        resolved = speed_step(speeds[i], _SPEED_STEP) if varying else math.inf
         kept = kept and speed == resolved and same_structure(needed, counts)
         if not constant:
             kept = kept and i > 0 and speeds[i] == speeds[i - 1]

@@ -19,7 +19,13 @@ from cutting.edge_segments.coupling import (
     first_and_last_revolution,
     part_below,
 )
-from cutting.edge_segments.segment_ends import border_at, is_border, lowest_height, sort_with_marks
+from cutting.edge_segments.segment_ends import (
+    WITHIN_WAVES,
+    border_at,
+    is_border,
+    lowest_height,
+    sort_with_marks,
+)
 
 #: borders closer than this share of the period are the same
 SAME_BORDER = 1e-10
@@ -92,9 +98,13 @@ def _border_angles(segments, period, depth, angles, levels):
             if not is_border(segments, segment, end, depth, lowest):
                 continue
             position = top if end == 1 else 0.0
+            # of so many each changes little, and is no worse for the size effect
+            inner = segments.turning[segment, end] == WITHIN_WAVES
             for side in range(2):
                 at, angles[count] = border_at(segments, segment, position, side, period)
-                levels[count] = _levels_at(segments, segment, position, at, depth)
+                levels[count] = 0
+                if not (inner and position == end):
+                    levels[count] = _levels_at(segments, segment, position, at, depth)
                 count += 1
     return count
 

@@ -18,9 +18,12 @@ from chatter.stability.methods.collocation.element_response import (
 )
 from chatter.stability.model import MillingModel
 from chatter.stability.spindle_rotation import PeriodFit
+from cutting.edge_segments.segment_ends import WITHIN_WAVES
 
 #: Gauss points per element and chatter wavelengths that it holds, as a rule
 RESOLUTION = (8, 1.0)
+#: on a serrated edge elements have so many Gauss points less, and are shorter by this factor
+_FEWER_POINTS, _SHORTER = 2, 0.75
 _SMALLEST_RESIDUAL = 1e-9
 
 
@@ -59,6 +62,9 @@ def element_cut(
     """
     arrays = model.cut(max_depth, wavelengths)
     longest = wavelengths * 2.0 * math.pi / arrays.fastest
+    if np.any(arrays.segments.turning == WITHIN_WAVES):
+        # its borders make most elements far shorter than a wavelength
+        points, longest = points - _FEWER_POINTS, longest * _SHORTER
     # modes far above chatter: a table over all that they turn through would cost more than elements
     share = _MOST_TURNED / max(longest * float(np.max(arrays.natural_frequency)), _MOST_TURNED)
     longest *= max(share, _SHORTEST_SHARE)

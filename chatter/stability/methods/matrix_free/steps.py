@@ -21,7 +21,13 @@ from chatter.engine.presets import INNER_KERNEL
 from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
 from cutting.edge_segments.coupling import chip_vanishes, part_below
-from cutting.edge_segments.segment_ends import border_at, is_border, lowest_height, sort_with_marks
+from cutting.edge_segments.segment_ends import (
+    TURNING,
+    border_at,
+    is_border,
+    lowest_height,
+    sort_with_marks,
+)
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
@@ -114,7 +120,7 @@ def _border_angles(cut, depth):
                 if sized and chip_vanishes(segments, segment, position, immersed, _THIN):
                     # a position that enters is in the cut after it, one that leaves before; where
                     # the edge is flat, what is left of it next to it counts too
-                    turned_round = segments.turning[segment, end] == 1
+                    turned_round = segments.turning[segment, end] >= TURNING
                     after = side == 0 or turned_round or sides[count] == _ROOT_AFTER
                     before = side == 1 or turned_round or sides[count] == _ROOT_BEFORE
                     sides[count] = _AFTER * after + _BEFORE * before
