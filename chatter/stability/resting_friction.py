@@ -119,11 +119,6 @@ def limits_with_resting_friction(model: MillingModel, here: ZeroOrderLimit) -> L
     return LimitsAtRest(min(1.0, of_lowest), here.critical_depth, least)
 
 
-def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
-    """Say what the limit at the speed of the case is with resting frictions stuck and without."""
-    return tuple(effect.note for effect in neglected_resting_friction(model))
-
-
 def _highest_at(limits: Mapping[float, float], others: float, length: UsualUnit) -> str:
     """Say at which amplitude, m, a limit, m, is above all others; empty where none is."""
     amplitude, highest = max(limits.items(), key=lambda one: one[1])
