@@ -38,7 +38,6 @@ from cutting.edge_segments.segments import (
     period_angle,
 )
 from cutting.engagement.immersion import engagement
-from cutting.engagement.inclined_tool import InclinedEngagement
 from cutting.force.directional_coefficients import (
     DirectionalTable,
     directional_table,
@@ -52,8 +51,8 @@ from cutting.tool.cutter import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
-#: cuts whose edge segments are kept; of an inclined tool every depth of a search is one
-_KEPT_SEGMENTS, _KEPT_INCLINED = 64, 512
+#: cuts whose edge segments are kept
+_KEPT_SEGMENTS = 64
 #: heights over which a table of a straight edge takes the mean of its flank
 _HEIGHTS = 12
 #: largest estimated error of critical depths, relative, where the case gives none
@@ -265,7 +264,9 @@ class MillingModel:
         case, feed = self.case, self.case.cut.feed_per_tooth * self.teeth
         if self.is_inclined:
             engaged = inclined_engagement(case, self.cutter, depth)
-            return _inclined_segments_of(engaged, self.laws, feed, self.flank, relative_length)
+            return inclined_edge_segments(
+                engaged, list(self.laws), feed, self.flank, relative_length
+            )
         return _segments_of(
             self.cutter, self.laws, case.uncut_band, feed, depth, self.flank, relative_length
         )
@@ -284,14 +285,6 @@ class MillingModel:
 def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> EdgeSegments:
     """Edge segments, kept: structures and resolutions change where a tool stays the same."""
     return edge_segments(cutter, list(laws), *cut)
-
-
-@lru_cache(maxsize=_KEPT_INCLINED)
-def _inclined_segments_of(
-    engaged: InclinedEngagement, laws: tuple[ForceLaw, ...], *cut: object
-) -> EdgeSegments:
-    """Edge segments of an inclined tool, kept."""
-    return inclined_edge_segments(engaged, list(laws), *cut)
 
 
 def milling_model(case: Case, structure: Structure | None = None) -> MillingModel:

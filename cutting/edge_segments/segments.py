@@ -10,6 +10,7 @@ setting errors or serration decide which pass left the surface, every pass has i
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,8 @@ _REVOLUTION = 2.0 * math.pi
 _SEGMENT_TURN = math.radians(1.2)
 #: the same where the earlier passes are searched: the arcs are taken at two positions within
 _SEGMENT_TURN_OF_PASSES = math.radians(2.5)
+#: inclined tools whose segments are kept; every depth of a search is one
+_KEPT_GEOMETRIES = 512
 #: shapes of the columns of a table of no segments
 _NO_SEGMENTS = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0, 0)
 
@@ -121,7 +124,8 @@ def edge_segments(
     order, first_of_group = segment_groups(segments, owners, sized=sized, apart=wave and sized)
     segments = [segments[i] for i in order]
     feed = (feed_per_revolution / _REVOLUTION, 0.0)
-    return _as_arrays(segments, turning[order], first_of_group, cutter, power, flank, feed, 0.0)
+    table = _as_arrays(segments, turning[order], first_of_group, cutter, feed, 0.0)
+    return _with_law(table, power, flank, cutter)
 
 
 def inclined_edge_segments(
@@ -135,26 +139,42 @@ def inclined_edge_segments(
 
     In the axes of the tool. Parameters as of `edge_segments`.
     """
-    cutter = engagement.cutter
-    edges, line, top = inclined_line(engagement, feed_per_revolution, relative_length)
-    slopes = [law.slope_power.cutting for law in laws]
-    if edges.all_teeth_equal:
-        segments, owners = segments_of_like_teeth(edges, line, top, slopes, relative_length)
-    else:
-        segments, owners = segments_of_passes(edges, line, top, slopes, relative_length)
-    turning = turning_ends(segments, owners, serrated=False)
     power = laws[0].slope_power
-    order, first_of_group = segment_groups(
-        segments, owners, sized=power.lowest_exponent != 0.0, apart=False
+    geometry = _inclined_geometry(
+        engagement, feed_per_revolution, relative_length, power.lowest_exponent != 0.0
     )
+    slopes = np.array([law.slope_power.cutting for law in laws])
+    segments = geometry.segments._replace(cutting=slopes[geometry.tooth])
+    return _with_law(segments, power, flank, engagement.cutter)
+
+
+class _Geometry(NamedTuple):
+    """Segments without a force law, and the tooth of each."""
+
+    segments: EdgeSegments
+    tooth: NDArray[np.int64]  # (P,)
+
+
+@lru_cache(maxsize=_KEPT_GEOMETRIES)
+def _inclined_geometry(
+    engagement: InclinedEngagement, feed_per_revolution: float, relative_length: float, sized: bool
+) -> _Geometry:
+    """Segments of an inclined tool, kept for other coefficients: arcs do not depend on them."""
+    edges, line, top = inclined_line(engagement, feed_per_revolution, relative_length)
+    no_law = [np.zeros(3)] * engagement.cutter.teeth
+    of_teeth = segments_of_like_teeth if edges.all_teeth_equal else segments_of_passes
+    segments, owners = of_teeth(edges, line, top, no_law, relative_length)
+    turning = turning_ends(segments, owners, serrated=False)
+    order, first_of_group = segment_groups(segments, owners, sized=sized, apart=False)
     segments = [segments[i] for i in order]
     highest = max((one.bottom + one.thickness for one in segments), default=top)
     feed = feed_per_revolution / _REVOLUTION
     along = (feed * engagement.along_feed, feed * engagement.along_axis)
-    return _as_arrays(
-        segments, turning[order], first_of_group, cutter, power, flank, along,
+    table = _as_arrays(
+        segments, turning[order], first_of_group, engagement.cutter, along,
         highest - engagement.axial_depth,
     )  # fmt: skip
+    return _Geometry(table, np.array([owners[i].tooth for i in order], dtype=np.int64))
 
 
 def inclined_line(
@@ -173,11 +193,10 @@ def _as_arrays(
     turning: NDArray[np.int64],
     first_of_group: NDArray[np.int64],
     cutter: Cutter,
-    power: SlopePower,
-    flank: ProcessDampingLaw | None,
     feed: tuple[float, float],
     lift: float,
 ) -> EdgeSegments:
+    """Table of segments without size effect and flank."""
     count = len(segments)
     # where no edge reaches the stock the shapes are those of one segment
     columns = [np.zeros(shape) for shape in _NO_SEGMENTS]
@@ -202,13 +221,23 @@ def _as_arrays(
         radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
         vanishing=np.asarray(table.vanishing, dtype=np.int64),
-        exponent=power.lowest_exponent, above_exponent=power.above_lowest,
-        directional=bool(np.any(power.above_lowest != 0.0)),
-        reference=power.reference, turning=turning,
-        flank=bare_flank() if flank is None else flank.linear(cutter.radius),
-        first_of_group=first_of_group,
+        exponent=0.0, above_exponent=np.zeros(3), directional=False, reference=1.0,
+        turning=turning, flank=bare_flank(), first_of_group=first_of_group,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
+
+
+def _with_law(
+    segments: EdgeSegments, power: SlopePower, flank: ProcessDampingLaw | None, cutter: Cutter
+) -> EdgeSegments:
+    """The segments with the size effect of a force law and a flank."""
+    return segments._replace(
+        exponent=power.lowest_exponent,
+        above_exponent=power.above_lowest,
+        directional=bool(np.any(power.above_lowest != 0.0)),
+        reference=power.reference,
+        flank=segments.flank if flank is None else flank.linear(cutter.radius),
+    )
 
 
 def period_angle(cutter: Cutter) -> float:

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from cutting.edge_segments import segments as segments_module
+from cutting.edge_segments.engagement_arcs import segments_of_like_teeth
 from cutting.edge_segments.inclined_edges import InclinedEdges
 from cutting.edge_segments.segments import inclined_edge_segments
 from cutting.engagement.inclined_tool import InclinedEngagement, ToolAxis
@@ -147,6 +149,27 @@ def test_arcs_against_the_bodies_that_were_swept(cutter, lead, tilt, side, stepo
         compared, in_the_cut = compared + 1, in_the_cut + cuts
     assert compared > 500
     assert in_the_cut > 10
+
+
+def test_arcs_are_searched_once_for_any_coefficients(monkeypatch):
+    """Every sample of an uncertain coefficient searched them anew at each of some 180 depths."""
+    searched = []
+
+    def counted(*given):
+        searched.append(given)
+        return segments_of_like_teeth(*given)
+
+    monkeypatch.setattr(segments_module, "segments_of_like_teeth", counted)
+    engaged = InclinedEngagement(BALL, ToolAxis(0.3, 0.1), 0.41e-3, "down", 0.6e-3, None)
+    laws = [[LinearLaw((kt, 2e8, 1e8)), LinearLaw((2.0 * kt, 2e8, 1e8))] for kt in (7e8, 9e8)]
+    one, other = (inclined_edge_segments(engaged, pair, 1e-4) for pair in laws)
+    assert len(searched) == 1
+    assert np.array_equal(one.entry, other.entry)
+    assert set(one.cutting[:, 0]) == {7e8, 14e8}
+    assert set(other.cutting[:, 0]) == {9e8, 18e8}
+    # the second tooth, half a turn behind at the tip, has its own law
+    second = one.angle[:, 0] > 0.5 * math.pi
+    assert set(one.cutting[second, 0]) in ({7e8}, {14e8})
 
 
 def swept_section(engaged):
