@@ -17,6 +17,7 @@ from chatter.detection.spectral.overload import judged_by_range
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.segments import CHATTER, Segment
 from chatter.detection.spectral.two_speeds import judged
+from chatter.detection.spectral.varied_speed import judged_at_even_angles, varied_speed, with_speed
 from chatter.monitoring.advice import is_stable, mode_of, proposed_by_frequency, stable_speeds
 from chatter.monitoring.recording_file import read_recording
 from chatter.monitoring.result import Advice, DetectedChatter
@@ -83,7 +84,15 @@ def detect(
         given = recording.spindle_frequency
     _refuse_unseen(recording, given)
     evidence = evidence_of(recording, given, teeth)
-    segments = judged_by_range(judged(evidence), recording)
+    speed = None
+    if given is not None and evidence.revolution.source != "tacho":
+        speed = varied_speed(recording, given, teeth)
+    if speed is None:
+        found = judged(evidence)
+    else:
+        found = judged_at_even_angles(recording, speed, teeth)
+        evidence = with_speed(evidence, speed)
+    segments = judged_by_range(found, recording)
     return DetectedChatter(
         recording, evidence, segments, given, case, _advice(segments, evidence.teeth, case)
     )

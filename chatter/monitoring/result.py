@@ -6,11 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from chatter.description.case import Case
 from chatter.detection.spectral.frame_evidence import Evidence
 from chatter.detection.spectral.overload import NOTED, overloaded
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.revolution_frequency import Revolution
+from chatter.detection.spectral.revolution_frequency import VARIATION, Revolution
 from chatter.detection.spectral.segments import Segment
 from chatter.detection.spectral.stated_speed import REFUTED, OtherSpeed
 from chatter.detection.spectral.two_speeds import pulses_in_words
@@ -153,8 +155,14 @@ class DetectedChatter(NotebookResult):
         if by_tacho and self.given is None and not self.recording.once_per_revolution:
             notes.append(self._of_pulses(revolution))
         if revolution is not None and self.given is not None:
+            slowest, fastest = (60.0 * one(revolution.frequency) for one in (np.min, np.max))
             ratio = revolution.mean / self.given
-            if abs(ratio - 1.0) > _DIFFERS:
+            if fastest > (1.0 + 2.0 * VARIATION) * slowest:
+                notes.append(
+                    f"the spindle changes its speed: {slowest:.0f} to {fastest:.0f} rpm by the "
+                    f"{_by(revolution)}, {60.0 * self.given:.0f} rpm were stated"
+                )
+            elif abs(ratio - 1.0) > _DIFFERS:
                 notes.append(
                     f"the spindle runs at {60.0 * revolution.mean:.0f} rpm by the {_by(revolution)}"
                     f", {60.0 * self.given:.0f} rpm were stated"

@@ -342,6 +342,11 @@ def _stated_speed(
     return revolution, other
 
 
+def frames_about(recording: Recording, frequency: float) -> Frames:
+    """Frames as a recording is judged in at a speed, Hz."""
+    return _frames(recording, frequency, _REVOLUTIONS)
+
+
 def _frames(recording: Recording, frequency: float, most: float) -> Frames:
     """Frames of so many revolutions at the most; fewer where the recording is short."""
     revolutions = recording.duration * frequency

@@ -104,6 +104,8 @@ class Revolution(NamedTuple):
         )
 
 
+#: source of a stated speed that the lines correct
+REFINED = "given, refined by the spectrum"
 #: standard deviations from which a spacing is believed, alone and beside a given speed
 CERTAIN, PLAUSIBLE = 10.0, 8.0
 #: range about a given speed in which the true one is searched; the near part of it is preferred
@@ -228,7 +230,7 @@ def _has_own_lines(autocorrelation: Array, step: float, spacing: float, parts: i
 
 def over_frames(frames: Frames, mean: float, teeth: int) -> Revolution:
     """Follow the spacing from frame to frame where another than the mean is certain."""
-    count, source = frames.time.size, "given, refined by the spectrum"
+    count, source = frames.time.size, REFINED
     found = np.full(count, np.nan)
     each = line_autocorrelations(frames)
     for row in range(count):
