@@ -1,4 +1,4 @@
-"""A served folder, and a tab of a browser that is open at it."""
+"""A workbench in process, a served folder, and a tab of a browser that is open at it."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import threading
 
 import pytest
 
+from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.server import WorkbenchServer
 from tests.chatter.app.browser_tab import PATIENCE, browser, tab_of
+from tests.places import EXAMPLES
 
 
 @contextlib.contextmanager
@@ -51,3 +53,13 @@ def tab(tmp_path, served):
         found.open(served[1].url)
         yield found
         found.close()
+
+
+@pytest.fixture
+def workbench(tmp_path):
+    text = (EXAMPLES / "two-degrees-of-freedom" / "case.toml").read_text()
+    # few speeds, so that studies are quick
+    (tmp_path / "case.toml").write_text(text.replace(":400", ":60"))
+    page = Workbench(tmp_path)
+    yield page
+    page.end()
