@@ -18,6 +18,7 @@ from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
 from chatter.description.stated_engagement import ENGAGEMENT_KEYS
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
 from chatter.simulation.resolution import Resolution, slices_of_inclined
 from chatter.simulation.spindle import (
@@ -250,7 +251,8 @@ def _notes_on(course: ToolCourse, case: Case) -> tuple[str, ...]:
     told = " to ".join(f"{speed:.6g}" for speed in speeds)
     notes = [
         f"{file}: {course.duration:.4g} s at {told} rpm, up to "
-        f"{course.feed_per_tooth * 1e3:.4g} mm a tooth; the verdict is that of the whole record"
+        f"{units_of(case).length.text(course.feed_per_tooth)} a tooth; the verdict is that of the "
+        "whole record"
     ]
     if course.in_air.size:
         spent = float(np.diff(course.in_air, axis=1).sum())

@@ -177,7 +177,7 @@ def test_the_picture_of_lobes_is_in_inches(diagram):
     assert point.get_ydata()[0] == pytest.approx(0.05)
     (limit,) = (line for line in axes.lines if line.get_label().startswith("limit,"))
     drawn = limit.get_ydata()
-    assert np.nanmin(drawn) == pytest.approx(np.min(diagram.limits.critical_depth) / 0.0254)
+    assert np.nanmin(drawn) == pytest.approx(diagram.lowest.critical_depth / 0.0254, rel=1e-3)
     assert " mm" not in texts_of(figure)
 
 
@@ -282,6 +282,26 @@ def test_the_best_cut_is_in_inches(optimum):
     assert f"{best.power / 745.69987:.3g} hp" in told[1]
     assert f"surface error {best.surface_error / 2.54e-5:.3g} mil" in told[1]
     assert "N m" not in told[1]
+
+
+def test_candidates_in_python_are_in_inches(optimum):
+    """They were in mm a tooth beside sentences in inches."""
+    point, shown = optimum.best.point, repr(optimum.best)
+    assert f"{point.axial_depth / 0.0254:.4g} in deep, 0.125 in wide, 0.002 in a tooth" in shown
+    assert shown.endswith("in³/min>") or shown.endswith("in^3/min>")
+    assert "mm" not in shown
+    assert "cm" not in shown
+
+
+def test_the_feed_of_a_program_is_in_inches(case, tmp_path):
+    """20 ipm with four flutes at 2674 rpm is a chip of 1.87 thou."""
+    (tmp_path / "part.nc").write_text("G20\nG1 X0.5 F20\n", encoding="utf-8")
+    program = {"file": str(tmp_path / "part.nc"), "acceleration": 20.0, "jerk": 5000.0}
+    run = chatter.simulate(
+        case.patch({"simulation.revolutions": None, "simulation.program": program})
+    )
+    (note,) = [one for one in run.notes if "a tooth" in one and "part.nc" in one]
+    assert re.search(r"up to 0\.0018\d* in a tooth;", note)
 
 
 def test_what_no_cut_keeps_is_told_in_horsepower(case):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter
 
+from chatter.description.unit_system import METRIC, UnitSystem
 from chatter.description.units import rpm
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
@@ -79,15 +80,16 @@ class Candidate:
     active: tuple[str, ...]
     probability: Probability | None = None  # None where nothing is uncertain
     verification: Verification | None = None  # None where it was not simulated
+    units: UnitSystem = METRIC  # of the case, that it is written in; no part of its record
 
     def __repr__(self) -> str:
         """The cut, in units of the shop: what it uses of each limit would fill the screen."""
         speed, *lengths = self.point[:4]
-        depth, width, feed = (1e3 * length for length in lengths)
+        depth, width, feed = (self.units.length.text(length) for length in lengths)
+        rate = self.units.instead_of("cm³/min")
         return (
-            f"<Candidate {rpm(speed):.6g} rpm, {depth:.4g} mm deep, {width:.4g} mm wide, "
-            f"{feed:.4g} mm a tooth, "
-            f"{6e7 * self.removal_rate:.4g} cm³/min>"
+            f"<Candidate {rpm(speed):.6g} rpm, {depth} deep, {width} wide, {feed} a tooth, "
+            f"{6e7 * self.removal_rate * rate.factor:.4g} {rate.name}>"
         )
 
     @property
@@ -97,7 +99,9 @@ class Candidate:
 
     def record(self) -> dict[str, Any]:
         """Record of the result cache."""
-        return asdict(self)
+        values = asdict(self)
+        del values["units"]
+        return values
 
     @classmethod
     def from_record(cls, record: dict[str, Any]) -> Candidate:

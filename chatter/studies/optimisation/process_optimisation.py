@@ -1,6 +1,7 @@
 """`optimum`: search, probability of the best cuts, and their confirmation in the time domain."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -120,7 +121,7 @@ def _found(case: Case, search: OptimumSearch, seed: int) -> Optimum:
     result = Optimum(
         case=case,
         limits=limits,
-        candidates=tuple(candidates),
+        candidates=tuple(replace(one, units=units_of(case)) for one in candidates),
         over_radial_depths=tuple(_best_of_radial_depths(grid_slices, limits)),
         grid_slice=_drawn_slice(search, candidates, grid_slices),
         exclusions=exclusions(grid_slices),
