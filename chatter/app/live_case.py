@@ -14,7 +14,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
-from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.limit_curve import LimitCurve, with_limits_between
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.neglected_effects import NeglectedEffect, deciding, notes_of
@@ -108,7 +108,8 @@ class LiveCase:
             found = pockets_of_limits(drawn.model, self._method, curve, deepest)
             self._neglected, pockets = found.neglected, found.pockets
         neglected = self._neglected  # in a coarse diagram that of the last fine one
-        crossings = self._crossings_of_cut(drawn, curve, progress)
+        at_cut = self._limits_of_cut(drawn, curve, progress)
+        crossings, curve = at_cut.crossings[0], with_limits_between(curve, at_cut)
         stable = int((crossings < cut.axial_depth).sum()) % 2 == 0
         return {
             "stage": drawn.stage,
@@ -127,16 +128,16 @@ class LiveCase:
             "notes": [*drawn.model.notes, *notes_of(neglected)],
         }
 
-    def _crossings_of_cut(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> Array:
-        """Limits at the speed of the cut, m; in a coarse diagram those of the nearest speed."""
+    def _limits_of_cut(self, drawn: "_Drawn", curve: LimitCurve, progress: Progress) -> LimitCurve:
+        """Limits at the speed of the cut; in a coarse diagram those of the nearest speed."""
         case, cut, speeds = drawn.case, drawn.case.cut, curve.spindle_speed
         inside = speeds[0] <= cut.spindle_speed <= speeds[-1] and cut.axial_depth <= drawn.max_depth
         if drawn.stage == "coarse" and inside:
-            return curve.crossings[int(np.argmin(np.abs(speeds - cut.spindle_speed)))]
+            return curve.at(int(np.argmin(np.abs(speeds - cut.spindle_speed))))
         deepest = beyond_the_cut(case, 1.02 * drawn.max_depth)
         depths = np.linspace(0.0, deepest, STAGES[drawn.stage][1] + 1)[1:]
         speed, steps = np.array([cut.spindle_speed]), fixed_steps(case)
-        return self._method.limits(drawn.model, speed, depths, steps, progress).crossings[0]
+        return self._method.limits(drawn.model, speed, depths, steps, progress)
 
     def simulation(
         self, given: Any, speed_rpm: float, depth_mm: float, progress: Progress

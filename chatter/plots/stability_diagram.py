@@ -20,7 +20,7 @@ from chatter.description.units import rpm
 from chatter.description.usual_units import UsualUnit
 from chatter.plots import style
 from chatter.plots.depth_axis import ABOVE_CUT, end_of_depth_axis
-from chatter.stability.limit_curve import joined_limits
+from chatter.stability.limit_curve import with_limits_between
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
@@ -67,7 +67,7 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
 
 def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     """Draw critical depths, what is stable below them, and the operating point."""
-    drawn = _with_operating_limit(diagram)
+    drawn = _with_named_limits(diagram)
     x, top, limits = drawn.axis.values, _top(drawn), drawn.limits
     length = diagram.units.length
     unit, factor = length
@@ -126,24 +126,22 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     style.finish(axes)
 
 
-def _with_operating_limit(diagram: StabilityDiagram) -> StabilityDiagram:
-    """Diagram that has the limits at the operating speed, between its own speeds, as well.
+def _with_named_limits(diagram: StabilityDiagram) -> StabilityDiagram:
+    """Diagram that has the limits that the words name between its own speeds as well.
 
-    A line between few speeds would pass beside the limit that the operating point is judged by.
+    Those at the operating speed, by which the operating point is judged, and the lowest ones.
     """
-    speeds, operating = diagram.limits.spindle_speed, diagram.operating
-    if operating is None:
+    limits = diagram.limits
+    for other in (diagram.operating, diagram.at_lowest):
+        if other is not None:
+            limits = with_limits_between(limits, other)
+    if limits is diagram.limits:
         return diagram
-    index = int(np.searchsorted(speeds, operating.spindle_speed[0]))
-    if index in (0, speeds.size) or np.isclose(speeds, operating.spindle_speed, rtol=1e-9).any():
-        return diagram
-    others = np.delete(np.arange(speeds.size + 1), index)
-    speeds = np.insert(speeds, index, operating.spindle_speed)
     return replace(
         diagram,
-        axis=replace(diagram.axis, values=rpm(speeds)),
-        limits=joined_limits(speeds, [(others, diagram.limits), (np.array([index]), operating)]),
-        max_depth=np.insert(diagram.max_depth, index, diagram.max_depth[index]),
+        axis=replace(diagram.axis, values=rpm(limits.spindle_speed)),
+        limits=limits,
+        max_depth=np.interp(limits.spindle_speed, diagram.limits.spindle_speed, diagram.max_depth),
     )
 
 
@@ -362,13 +360,20 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
 
 
 def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:
-    """Draw the chatter frequency at the limit, with the natural frequencies."""
-    kinds, frequency = np.array(diagram.limits.bifurcation), diagram.limits.chatter_frequency
+    """Draw the chatter frequency at the limit, with the natural frequencies.
+
+    Over spindle speed the speed of the cut is marked.
+    """
+    drawn = _with_named_limits(diagram)
+    kinds, frequency = np.array(drawn.limits.bifurcation), drawn.limits.chatter_frequency
     for kind, name, colour in (("hopf", "Hopf", style.BLUE), ("flip", "flip", style.RED)):
         of_kind = kinds == kind
         if of_kind.any():
-            x = diagram.axis.values[of_kind]
+            x = drawn.axis.values[of_kind]
             axes.plot(x, frequency[of_kind], ".", markersize=3.5, color=colour, label=name)
+    ends, speed = drawn.axis.values[[0, -1]], diagram.axis.case_value
+    if diagram.is_over_speed and ends[0] <= speed <= ends[1]:
+        axes.axvline(speed, color=style.GREY, linewidth=0.8, label="operating speed")
     low, high = _frequency_range(frequency)
     label: str | None = "natural frequency"
     for values in diagram.natural_frequencies:
@@ -386,7 +391,7 @@ def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:
     if axes.get_legend_handles_labels()[0]:
         # above the panel: within it there are points everywhere
         axes.legend(
-            loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False, ncols=3,
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False, ncols=4,
             borderaxespad=0.1,
         )  # fmt: skip
 

@@ -191,6 +191,8 @@ class StabilityDiagram(SavedResult):
         Over spindle speed: limits at the speed of the case alone.
     lowest : LowestLimit, optional
         Over spindle speed: the lowest limit, between the samples as well.
+    at_lowest : LimitCurve, optional
+        Over spindle speed: limits at the speed of the lowest one, where that is between the speeds.
     natural_frequencies : (k, n) array of float
         Over spindle speed: of the k modes, Hz.
     depth_step : float
@@ -217,6 +219,7 @@ class StabilityDiagram(SavedResult):
     pockets: tuple[Pocket, ...] = ()
     operating: LimitCurve | None = None
     lowest: LowestLimit | None = None
+    at_lowest: LimitCurve | None = None
     natural_frequencies: Array = field(default_factory=lambda: np.empty((0, 0)))
     depth_step: float = math.nan
     grid: StabilityMap | None = None

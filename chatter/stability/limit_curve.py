@@ -1,5 +1,7 @@
 """Limits of stability over spindle speed: what every method returns."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -33,6 +35,14 @@ class LimitCurve(NamedTuple):
         """First limits (n,), mm; inf where none was found."""
         return 1e3 * self.critical_depth
 
+    def at(self, index: int) -> LimitCurve:
+        """Limits at one of the speeds alone."""
+        one = slice(index, index + 1)
+        return LimitCurve(
+            self.spindle_speed[one], self.critical_depth[one], self.chatter_frequency[one],
+            self.bifurcation[one], self.crossings[one], self.steps[one], self.error,
+        )  # fmt: skip
+
     def __repr__(self) -> str:
         """How many limits there are: the arrays would fill the screen."""
         found = int(np.isfinite(self.critical_depth).sum())
@@ -58,6 +68,21 @@ def limits_at(
     if found.size:
         kind[found], frequency[found] = at_limits(found, first[found])
     return LimitCurve(speeds, first, frequency, tuple(kind.tolist()), tuple(crossings), steps)
+
+
+def with_limits_between(curve: LimitCurve, other: LimitCurve) -> LimitCurve:
+    """A curve with the limits at the speed of another, where it lies between its own speeds.
+
+    A line between few speeds would pass beside the limit at that speed.
+    """
+    speeds, speed = curve.spindle_speed, other.spindle_speed
+    index = int(np.searchsorted(speeds, speed[0]))
+    if index in (0, speeds.size) or np.isclose(speeds, speed, rtol=1e-9).any():
+        return curve
+    others = np.delete(np.arange(speeds.size + 1), index)
+    return joined_limits(
+        np.insert(speeds, index, speed), [(others, curve), (np.array([index]), other)]
+    )
 
 
 def joined_limits(speeds: Array, parts: Sequence[tuple[IntegerArray, LimitCurve]]) -> LimitCurve:

@@ -10,7 +10,7 @@ from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.lowest_limit import lowest_limit
+from chatter.stability.lowest_limit import LowestLimit, lowest_limit
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.neglected_effects import notes_of
@@ -91,6 +91,7 @@ def lobes(
         neglected=found.neglected,
         operating=operating,
         lowest=lowest,
+        at_lowest=_limits_at(lowest, model, chosen, speeds, depths),
         resting_friction=found.resting_friction,
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
@@ -118,6 +119,19 @@ def notes_on_tolerance(model: MillingModel, limits: LimitCurve) -> tuple[str, ..
         f"the critical depths are accurate to {limits.error:.1%}, not to the {model.tolerance:.2%} "
         "asked for; a lower lobes.tolerance takes finer elements, and longer",
     )
+
+
+def _limits_at(
+    lowest: LowestLimit, model: MillingModel, method: StabilityMethod, speeds: Array, depths: Array
+) -> LimitCurve | None:
+    """All limits at the speed of the lowest; None where it is one of the speeds, or there is none.
+
+    Speeds (n,) in rad/s, depths (m,) in m.
+    """
+    speed = np.array([lowest.spindle_speed])
+    if np.isnan(speed[0]) or np.isclose(speeds, speed, rtol=1e-9).any():
+        return None
+    return method.limits(model, speed, depths, fixed_steps(model.case), no_progress)
 
 
 def _operating_limit(

@@ -1,6 +1,7 @@
 """Pictures answer what they are looked at for: no staircases, no white, no empty space."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -103,12 +104,42 @@ def test_few_speeds_draw_the_limit_that_the_words_name():
     assert y[column == 0].max() == pytest.approx(wanted, abs=2.0 * (y[1] - y[0]))
     # the table and the other samples stay those of the speeds asked for
     assert diagram.tables()["lobes"]["spindle_speed [rpm]"].values.size == 6
-    assert set(np.round(curve.get_xdata(), 6)) == {*range(1000, 2001, 200), 1353.0}
+    lowest = diagram.summary()["lowest_limit"]["spindle_speed_rpm"]
+    wanted = {*range(1000, 2001, 200), 1353.0, round(lowest, 6)}
+    assert set(np.round(curve.get_xdata(), 6)) == wanted
+
+
+def test_few_speeds_draw_the_lowest_limit_that_the_words_name():
+    """Fourteen speeds: 2.8 mm at the nearest in the picture, 2.44 mm between them in words."""
+    diagram = chatter.lobes(coarse(1400))
+    figure = plot_limits(diagram)
+    (curve,) = [
+        one for one in figure.axes[0].get_lines()
+        if str(one.get_label()).startswith("limit, coll")
+    ]  # fmt: skip
+    told = diagram.summary()["lowest_limit"]
+    assert told["spindle_speed_rpm"] % 200.0 > 1.0
+    drawn = np.nanmin(curve.get_ydata())
+    assert drawn == pytest.approx(told["critical_depth_mm"], rel=1e-3)
+    assert curve.get_xdata()[np.nanargmin(curve.get_ydata())] == pytest.approx(
+        told["spindle_speed_rpm"]
+    )
+    dots = np.concatenate(
+        [one.get_xdata() for one in figure.axes[1].get_lines() if one.get_marker() == "."]
+    )
+    assert np.isclose(dots, told["spindle_speed_rpm"]).any()
+
+
+def test_the_frequencies_show_the_operating_speed():
+    frequency = plot_limits(chatter.lobes(coarse(1353))).axes[1]
+    (line,) = [one for one in frequency.get_lines() if one.get_label() == "operating speed"]
+    assert list(line.get_xdata()) == [1353.0, 1353.0]
 
 
 @pytest.mark.parametrize("speed", [900, 1000, 1400, 2100])
 def test_no_limit_is_added_beside_the_speeds_or_at_one_of_them(speed):
-    axes = plot_limits(chatter.lobes(coarse(speed))).axes[0]
+    diagram = replace(chatter.lobes(coarse(speed)), at_lowest=None)
+    axes = plot_limits(diagram).axes[0]
     (curve,) = [one for one in axes.get_lines() if str(one.get_label()).startswith("limit, coll")]
     assert curve.get_xdata().size == 6
 

@@ -45,6 +45,18 @@ def test_diagram_is_that_of_the_command(live):
     assert np.median(np.abs(np.array(shown) / (1e3 * expected) - 1.0)) < 0.01
 
 
+def test_the_curve_has_the_limit_at_the_speed_of_the_cut():
+    """The point was judged by a limit that the curve between 200 speeds passed beside."""
+    live = LiveCase(chatter.load(CASE).patch({"cut.spindle_speed": "9876.5 rpm"}), "collocation")
+    drawn = live.diagram({}, "fine", no_progress)
+    speeds = drawn["spindle_speed_rpm"]
+    (at,) = np.flatnonzero(np.isclose(speeds, 9876.5))
+    wanted = 1e3 * chatter.check(live.case, "collocation").critical_depth
+    assert drawn["crossings_mm"][at][0] == pytest.approx(wanted, rel=1e-3)
+    assert np.all(np.diff(speeds) > 0.0)
+    assert len(speeds) == len(drawn["crossings_mm"]) == len(drawn["bifurcation"])
+
+
 def test_limit_is_inverse_to_the_coefficients(live):
     before = live.diagram({}, "coarse", no_progress)
     values = {"material.Ktc": 1200.0, "material.Krc": 400.0, "lobes.depths.to": 5.0}
