@@ -103,7 +103,7 @@ class Coefficients(NotebookResult):
         InputError
             If the waveforms cannot be used.
         """
-        found = waveforms(self.measurement)
+        found = waveforms(self.measurement, zeroed=self.zeroed)
         given = (self.law_of_means, self.means, self._cases, found.kept)
         apart = self.kept_apart
         return replace(
@@ -161,10 +161,13 @@ class Coefficients(NotebookResult):
     def by_waveforms(self) -> bool:
         """Whether the coefficients are those of the waveforms.
 
-        They tell offsets and runout from the law, but need a tool that does not vibrate.
+        They tell offsets and runout from the law, but need a tool that does not vibrate, and
+        forces of the chip that vary.
         """
         found = self.waveforms
-        return found is not None and found.tool_is_rigid and found.has_material
+        if found is None or found.hides_chip_forces:
+            return False
+        return found.tool_is_rigid and found.has_material
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -344,13 +347,15 @@ class Coefficients(NotebookResult):
         return " to ".join(f"{one * unit.factor:.4g}" for one in (value, *others)) + f" {unit.name}"
 
     def _notes_of_waveforms(self) -> list[str]:
-        if self.linear_law_holds:
-            return []
         found = self.waveforms
         assert found is not None
+        notes = found.notes_of_offsets
+        if self.linear_law_holds:
+            return notes
         notes = [
+            *notes,
             f"the linear law does not hold: the waveforms are better explained by "
-            f"{found.kept.model.law.name}, by strong evidence"
+            f"{found.kept.model.law.name}, by strong evidence",
         ]
         if found.kept is not found.of_case:
             notes.append(

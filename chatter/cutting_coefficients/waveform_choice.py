@@ -34,7 +34,7 @@ _FIRST_LAW = "linear"
 
 
 def waveform_fits(
-    averages: Sequence[RevolutionAverage], unsigned: Sequence[str], helix: bool
+    averages: Sequence[RevolutionAverage], unsigned: Sequence[str], helix: bool, zeroed: bool
 ) -> list[WaveformFit]:
     """Fits of every law to the waveforms, with the runout, offsets and resonances that show.
 
@@ -45,6 +45,8 @@ def waveform_fits(
         Channels whose sense is not known.
     helix : bool
         Whether the helix is fitted too.
+    zeroed : bool
+        Whether the air has shown the offsets: what they would hide is told by the means then.
 
     Returns
     -------
@@ -59,7 +61,8 @@ def waveform_fits(
         best = _best([best, _with_runout(best)])
     # from here on what a harmonic is left to be wrong by says how much it counts
     best = _weighted(best)
-    best = _best([best, _without_offsets(best)])
+    without = _without_offsets(best)
+    best = without if zeroed and best.hidden else _best([best, without])
     others = [law for law in _laws(LAWS, averages) if law.name != _FIRST_LAW]
     fits = [best, *(_with_law(best, law) for law in others)]
     fits += _by_direction(best)

@@ -25,6 +25,10 @@ _DAMPING = (math.log(0.005), math.log(1.0))
 #: of ln of the cut-off of a low-pass, from where it was found
 _LOW_PASS = 0.7
 _MOST_EVALUATIONS = 40
+#: weight of an offset over that of the readings: of what they do not tell, offsets are the least
+_LEAST_OFFSET = 1e-4
+#: singular value, over the largest, of what the readings do not tell, and share of a coefficient
+_UNTOLD, _SHARE = 1e-6, 0.01
 #: residual of a harmonic, over the largest of its channel, below which its weight grows no more
 _LEAST_RESIDUAL = 0.05
 
@@ -43,6 +47,8 @@ class WaveformFit:
     power: Array  # (channels,) mean square of the weighted residual, summed over cuts
     #: (channels,) independent readings, by the autocorrelation of the weighted residual
     effective: Array
+    #: coefficients that offsets hide: their force does not vary over the revolution
+    hidden: tuple[str, ...] = ()
 
     @property
     def coefficients(self) -> Array:
@@ -119,8 +125,23 @@ class Problem:
         """Linear parameters, and what they leave, weighted."""
         rows = self.rows(parameters)
         scale = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
-        values = np.linalg.lstsq(rows / scale, self.measured, rcond=1e-9)[0] / scale
+        # without it half of a force that does not vary were an offset
+        few = _LEAST_OFFSET * np.eye(scale.size)[len(self.model.law.keys) :]
+        given = np.concatenate([self.measured, np.zeros(len(few))])
+        values = np.linalg.lstsq(np.vstack([rows / scale, few]), given, rcond=1e-9)[0] / scale
         return values, rows @ values - self.measured
+
+    def hidden(self, parameters: Array) -> tuple[str, ...]:
+        """Coefficients whose force offsets of the channels may be as well."""
+        keys = self.model.law.keys
+        rows = self.rows(parameters)
+        scale = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
+        sizes, directions = np.linalg.svd(rows / scale, full_matrices=False)[1:]
+        untold = np.abs(directions[sizes < _UNTOLD * sizes[0], : len(keys)])
+        return tuple(
+            key for key, share in zip(keys, untold.max(axis=0, initial=0.0), strict=True)
+            if share > _SHARE
+        )  # fmt: skip
 
     def _columns(self, number: int, one: RevolutionAverage, parts: dict[str, Array]) -> Complex:
         shape = np.concatenate([parts["runout"], parts["exponent"], parts["helix"]])
@@ -221,7 +242,7 @@ def _with_covariance(problem: Problem, parameters: Array) -> WaveformFit:
     power, effective = _powers(weighted)
     return WaveformFit(
         problem.model, problem.averages, parameters, values, residual, covariance,
-        problem.weights, power, effective,
+        problem.weights, power, effective, problem.hidden(parameters),
     )  # fmt: skip
 
 

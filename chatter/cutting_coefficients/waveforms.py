@@ -148,9 +148,29 @@ class Waveforms:
         return self.most_left <= _VIBRATES
 
     @property
+    def hidden(self) -> tuple[str, ...]:
+        """Coefficients of the linear law that offsets hide; other laws have other ones for them."""
+        return next(one for one in self.fits if one.model.law.name == "linear").hidden
+
+    @property
+    def hides_chip_forces(self) -> bool:
+        """Whether offsets hide a cutting coefficient: the forces of the chip do not vary."""
+        return any(key.endswith("c") for key in self.hidden)
+
+    @property
+    def notes_of_offsets(self) -> list[str]:
+        """That offsets may be what is taken for cutting forces."""
+        if not self.hidden:
+            return []
+        return [
+            f"the waveforms do not tell {', '.join(self.hidden)} from an offset of the "
+            "dynamometer: the sum over the teeth does not vary; record the air before the cut"
+        ]
+
+    @property
     def notes(self) -> list[str]:
         """What the reader should know."""
-        notes = []
+        notes = self.notes_of_offsets
         if not self.tool_is_rigid:
             notes.append(
                 f"a rigid tool leaves up to {self.most_left:.0%} of the varying force: tool or "
@@ -239,13 +259,14 @@ class Waveforms:
         return tomlkit.dumps(document)
 
 
-def waveforms(measurement: Measurement) -> Waveforms:
+def waveforms(measurement: Measurement, *, zeroed: bool) -> Waveforms:
     """Fit the waveforms of all cuts together.
 
     The forces are averaged over the revolution at the speed that each record shows. Start angles,
     runout, offsets of channels and one resonance of the dynamometer for each channel are fitted
     with the law, a low-pass before all channels, and the helix where the case does not give it;
-    what does not lower the Bayesian criterion is left out.
+    what does not lower the Bayesian criterion is left out. `zeroed` tells whether the offsets were
+    those of the air, and are taken off.
 
     Raises
     ------
@@ -256,7 +277,7 @@ def waveforms(measurement: Measurement) -> Waveforms:
     known = force_channels(measurement, measurement.runs[0])
     unsigned = [name for name, (_, has_sign) in known.items() if not has_sign]
     has_free_helix = "helix" not in measurement.case.tool.model_fields_set
-    fits = waveform_fits(averages, unsigned, has_free_helix)
+    fits = waveform_fits(averages, unsigned, has_free_helix, zeroed)
     return Waveforms(tuple(fits), units=units_of(measurement.case))
 
 
