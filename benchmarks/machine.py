@@ -11,13 +11,8 @@ masses and stiffnesses are of that size. All axes move at once, back and forth.
 from __future__ import annotations
 
 import os
-import statistics
-import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
-
-from chatter.compile.machine_parts import assembled_machine
 
 # figures of one core: threads of the linear algebra would wait for a busy second one
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -25,6 +20,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
+from benchmarks.one_core import show, timed
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import port_record
@@ -38,7 +35,6 @@ from dynamics.trajectory.set_points import SetPoints, set_points
 
 STEP = 50e-6  # s
 DURATION = 5.0  # s, simulated
-REPEATS = 7
 AIM = 20.0  # times faster than real time
 AMPLITUDE, FREQUENCY = 0.02, 1.0  # of the move of every axis, m, Hz
 
@@ -55,24 +51,6 @@ GUIDE_FRICTION = {
 }
 INCLINATION = 1.15e4  # ah, 1/m of travel
 LEAD = 10e-3  # m
-
-
-class Timing(NamedTuple):
-    """Shortest and median of repeats, s."""
-
-    shortest: float
-    median: float
-
-
-def timed(call: Callable[[], object]) -> Timing:
-    """Time a call that was made once before."""
-    call()
-    taken = []
-    for _ in range(REPEATS):
-        start = time.thread_time()
-        call()
-        taken.append(time.thread_time() - start)
-    return Timing(min(taken), statistics.median(taken))
 
 
 def corners(x: float, y: float, z: float) -> list[list[float]]:
@@ -240,19 +218,6 @@ def allocations(call: Callable[[], object]) -> int:
     return rtsys.get_allocation_stats().alloc - before.alloc
 
 
-def show(heads: str, rows: list[tuple]) -> list[dict]:
-    """Print a table, its heads parted by bars, and return its rows by column."""
-    columns = heads.split("|")
-    text = [
-        tuple(columns),
-        *[tuple(x if isinstance(x, str) else f"{x:.3g}" for x in row) for row in rows],
-    ]
-    widths = [max(len(row[i]) for row in text) for i in range(len(columns))]
-    for row in text:
-        print("  " + "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True)))
-    return [dict(zip(columns, row, strict=True)) for row in rows]
-
-
 def main() -> dict[str, list[dict]]:
     """Print the table and return it."""
     file = machining_centre()
@@ -285,13 +250,13 @@ def main() -> dict[str, list[dict]]:
                 str(allocations(loop)),
             )
         )
-    print(
+    title = (
         f"{machine.structure.size} degrees of freedom, {len(machine.drives)} controlled drives, "
         f"{len(machine.frictions)} frictions, step {STEP * 1e6:g} us, {DURATION:g} s; times "
         f"faster than real time (aim {AIM:g}) of `run_machine` and of the loop alone"
     )
     heads = "friction|faster|median|of aim|ns a step|ns in loop|loop faster|allocations in loop"
-    return {"machine": show(heads, rows)}
+    return {"machine": show(title, heads, rows)}
 
 
 if __name__ == "__main__":

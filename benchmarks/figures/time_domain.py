@@ -6,13 +6,8 @@ from functools import partial
 
 from benchmarks.coupled import measured
 from benchmarks.figures.figure import Figure, Reached
-from benchmarks.time_domain import (
-    counted_operations,
-    delayed_case,
-    engaged_share,
-    floating_point_peak,
-    timed,
-)
+from benchmarks.one_core import floating_point_peak, timed
+from benchmarks.time_domain import counted_operations, delayed_case, engaged_share
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
 
