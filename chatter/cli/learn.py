@@ -78,7 +78,8 @@ def learn(options: LearnOptions) -> None:
 def _print_learnt(found: Learnt) -> None:
     summary = found.summary()
     rows = [_row(one) for one in summary["parameters"]]
-    title = f"learnt from {summary['tests']} tests"
+    count = summary["tests"]
+    title = f"learnt from {count} {'test' if count == 1 else 'tests'}"
     print_table(title, ["value", "unit", "declared", "learnt", "95 % interval"], rows)
     verdicts = summary["verdicts"]
     if verdicts["judged"]:

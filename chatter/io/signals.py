@@ -9,9 +9,9 @@ from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.io.formats.format_list import format_of
-from chatter.io.headings import named
+from chatter.io.headings import DIMENSIONS, named
 from chatter.io.stated_columns import read_signal_table, signals_of
-from chatter.io.table import Column, Table, is_copy
+from chatter.io.table import Column, Table, is_copy, is_number
 from dynamics.frf.container import Frf, MeasurementError
 
 Signals = dict[str, Array]
@@ -56,6 +56,8 @@ def _in_si(table: Table, kind: str) -> Signals:
         if name in ("stable", "chatter"):
             stable = np.array([_verdict(table, column, k) for k in range(table.size)])
             name, values = "stable", stable if name == "stable" else 1.0 - stable
+        elif name not in DIMENSIONS and _are_remarks(column):
+            continue
         else:
             values = _numbers(table, column) * factor
         if name not in signals:
@@ -113,6 +115,13 @@ def _name_and_factor(path: Path, column: Column, kind: str) -> tuple[str, float]
     if not column.point.direction:
         raise InputError(f"{path}: {column.heading}: a {column.content} without a direction")
     return pattern.format(axis=column.point.direction), float(column.point.sign)
+
+
+def _are_remarks(column: Column) -> bool:
+    """Whether a column has words or blanks alone: an operator's remarks, names of tools."""
+    if column.unit or column.content or getattr(column.cells, "dtype", object) != object:
+        return False
+    return not any(is_number(str(cell)) for cell in column.cells if str(cell).strip())
 
 
 def _numbers(table: Table, column: Column) -> Array:

@@ -46,3 +46,23 @@ def test_limits_below_all_depths_that_were_looked_at_leave_a_diagram():
         assert np.all(np.diff(depths) > 0.0)
         assert 0.0 < depths[0] < depths[-1] == pytest.approx(0.5)
     assert _depths(0.5, np.array([0.0, 1e-3]))[0] < 1e-3
+
+
+def test_remarks_of_the_operator_are_passed_over(tmp_path):
+    case = chatter.load(case_of(tmp_path, 900.0))
+    path = tmp_path / "cuts.csv"
+    rows = "1,9000,1.5,1,good surface\n2,9500,2.5,0,loud\n3,9800,2,1,\n"
+    heading = "No,spindle_speed [rpm],axial_depth [mm],stable,remark\n"
+    path.write_text(heading + rows, encoding="utf-8")
+    runs = read_cuts(path, case).runs
+    depths = np.concatenate([run.signals["axial_depth"] for run in runs])
+    assert depths == pytest.approx([1.5e-3, 2.5e-3, 2e-3])
+
+
+def test_a_cell_of_words_in_a_column_of_numbers_is_still_named(tmp_path):
+    case = chatter.load(case_of(tmp_path, 900.0))
+    path = tmp_path / "cuts.csv"
+    heading = "spindle_speed [rpm],axial_depth [mm],stable,level\n"
+    path.write_text(heading + "9000,1.5,1,0.4\n9500,2.5,0,loud\n", encoding="utf-8")
+    with pytest.raises(InputError, match='line 3: level: "loud" is not a number'):
+        read_cuts(path, case)
