@@ -119,9 +119,10 @@ def _name_and_factor(path: Path, column: Column, kind: str) -> tuple[str, float]
 
 def _are_remarks(column: Column) -> bool:
     """Whether a column has words or blanks alone: an operator's remarks, names of tools."""
-    if column.unit or column.content or getattr(column.cells, "dtype", object) != object:
+    cells = column.cells
+    if column.unit or column.content or (isinstance(cells, np.ndarray) and cells.dtype.kind != "O"):
         return False
-    return not any(is_number(str(cell)) for cell in column.cells if str(cell).strip())
+    return not any(is_number(str(cell)) for cell in cells if str(cell).strip())
 
 
 def _numbers(table: Table, column: Column) -> Array:
