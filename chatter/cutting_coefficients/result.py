@@ -17,6 +17,7 @@ from chatter.cutting_coefficients.feed_series import position_among
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.laws import DIRECTION_NAMES
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
+from chatter.cutting_coefficients.notes import notes_on
 from chatter.cutting_coefficients.number_of_cuts import number_of_cuts
 from chatter.cutting_coefficients.oblique_fit import ObliqueFit, oblique_fit
 from chatter.cutting_coefficients.own_table import add_row
@@ -45,12 +46,6 @@ if TYPE_CHECKING:
 _LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
-#: tangential coefficients of foam and of hardened steel at thin chips, with room to spare, Pa
-_SOFTEST, _HARDEST = 5e6, 3e10
-#: paths of a run that state its feed
-_FEEDS = {"cut.feed_per_tooth", "cut.feed_rate"}
-#: share of variance of a channel over the cuts that a straight line leaves, worth telling
-_LINEAR_SHARE = 0.95
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -276,104 +271,12 @@ class Coefficients(NotebookResult):
     @property
     def notes(self) -> list[str]:
         """What the reader should know."""
-        notes = []
-        if self.zeroed:
-            notes.append("offsets are those of the air before or after each cut, and taken off")
-        elif not self.by_waveforms:
-            notes.append(
-                "mean forces hold an offset of the dynamometer: zero it in the air, or the edge "
-                "coefficients take it up"
-            )
-        if self.kept.signs:
-            notes.append(
-                "unknown senses of channels are those that make the coefficients positive and the "
-                "radial one smaller than the tangential one"
-            )
-        notes += self._of_no_material()
-        notes += self._of_feeds_not_stated()
-        if self.by_waveforms:
-            return [*notes, *self._notes_of_waveforms()]
-        if self.linear_law_holds is False:
-            worst = min(self.straightness().items(), key=lambda item: item[1], default=None)
-            text = "the linear law leaves more than the readings scatter"
-            if worst is not None and worst[1] < _LINEAR_SHARE:
-                text += f"; least straight over the cuts is {worst[0]}, r2 {worst[1]:.2f}"
-            notes.append(text)
-            notes += self._bent_directions()
-        if np.any(self.kept.values[self.kept.law.cutting] < 0.0):
-            notes.append(
-                "a cutting coefficient is below zero: a direction or a sense may be wrong; "
-                "measurement.toml tells both by [channels.NAME] with on, direction and "
-                'sign = "unknown"'
-            )
-        if not self.has_material:
-            notes.append("no [material] section is written: the tangential force does not cut")
-        if self.holdout is None:
-            notes.append("too few cuts to judge the law by one held out")
-        if len({run.of(self.measurement.case).cut for run in self.measurement.runs}) == 1:
-            notes.append(
-                "mean forces of one cut alone do not tell the edge forces: the coefficients hold "
-                "them, and the deviations are too small"
-            )
-        return notes
+        return notes_on(self)
 
-    def _of_no_material(self) -> list[str]:
-        """That the tangential coefficient is one that nothing milled has, as by a wrong unit."""
-        tangential = float(self.material.get("Ktc", 0.0))  # type: ignore[arg-type]
-        if tangential <= 0.0 or _SOFTEST <= tangential <= _HARDEST:
-            return []
-        shown = self.units.pressure
-        return [
-            f"Ktc is {shown.factor * tangential:.3g} {shown.name}, where what is milled has "
-            f"{shown.factor * _SOFTEST:.3g} to {shown.factor * _HARDEST:.3g} {shown.name}: "
-            "check the unit of the forces in the heading, the feed and the axial depth"
-        ]
-
-    def _of_feeds_not_stated(self) -> list[str]:
-        """That some runs have the feed of the case, where others state their own."""
-        runs, case = self.measurement.runs, self.measurement.case
-        silent = [run.name for run in runs if _FEEDS.isdisjoint(run.overrides)]
-        if not silent or len(silent) == len(runs):
-            return []
-        feed = f"{self._length(case.get('cut.feed_per_tooth'))} a tooth"
-        return [
-            f"{', '.join(silent)}: measurement.toml states no feed, as of the other runs; that of "
-            f"the case is taken, {feed}"
-        ]
-
-    def _length(self, value: float, *others: float) -> str:
-        """Lengths, m, in the unit of the case: "0.05 to 0.2 mm"."""
+    def lengths(self, value: float, *others: float) -> str:
+        """Return lengths, m, in the unit of the case: "0.05 to 0.2 mm"."""
         unit = self.units.length
         return " to ".join(f"{one * unit.factor:.4g}" for one in (value, *others)) + f" {unit.name}"
-
-    def _notes_of_waveforms(self) -> list[str]:
-        found = self.waveforms
-        assert found is not None
-        notes = found.notes_of_offsets
-        if self.linear_law_holds:
-            return notes
-        notes = [
-            *notes,
-            f"the linear law does not hold: the waveforms are better explained by "
-            f"{found.kept.model.law.name}, by strong evidence",
-        ]
-        if found.kept is not found.of_case:
-            notes.append(
-                f"[material] has the {found.of_case.model.law.name} law: a cutting coefficient of "
-                f"{found.kept.model.law.name} is below zero"
-            )
-        return notes
-
-    def _bent_directions(self) -> list[str]:
-        """Directions whose force is no line over the chip, in words."""
-        one = self.by_direction
-        if one is None:
-            return []
-        return [
-            f"the {name} force goes with the power {one.exponents[number]:.2f} of the chip"
-            for name, number in zip(DIRECTION_NAMES, one.law.exponents, strict=True)
-            if number >= 0
-        ]
 
     def straightness(self) -> dict[str, float]:
         """Share r^2 of the variance of each channel over the cuts that the linear law explains."""
@@ -487,7 +390,7 @@ class Coefficients(NotebookResult):
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
         folder = self.measurement.folder.resolve().name
         source = f"{self.origin} of {number_of_cuts(len(feeds))}, {folder}"
-        validity = f"feeds of {self._length(min(feeds), max(feeds))} a tooth"
+        validity = f"feeds of {self.lengths(min(feeds), max(feeds))} a tooth"
         return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 
     def plot(self) -> Figure:
