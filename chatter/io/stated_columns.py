@@ -4,10 +4,11 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-from chatter.io.formats.csv import CSV, read_with_headings
+from chatter.io.formats.csv import CSV, read_table, read_with_headings
 from chatter.io.formats.format import Format
 from chatter.io.formats.format_list import format_of
 from chatter.io.formats.records import record_of, stated_record
+from chatter.io.sensitivities import with_sensitivities
 from chatter.io.table import Table, table_of
 from dynamics.frf.container import MeasurementError
 
@@ -24,7 +25,8 @@ def read_signal_table(path: Path, columns: str | None = None) -> Table:
         File; of a file that holds several records ``FILE#RECORD``, by name or number from 1.
     columns : str, optional
         Names and units of all columns in their order, such as
-        ``"time [s], force [N], acceleration [m/s^2]"``, instead of those of the file.
+        ``"time [s], force [N], acceleration [m/s^2]"``, instead of those of the file; of volts the
+        sensitivity of the sensor, ``"force [2.25 mV/N]"``.
 
     Raises
     ------
@@ -36,7 +38,8 @@ def read_signal_table(path: Path, columns: str | None = None) -> Table:
         return signals_of(one, path)
     headings = _headings(path, columns)
     if one is CSV:
-        return read_with_headings(path, headings)
+        table = read_with_headings(path, headings)
+        return with_sensitivities(table, _units_of_text(path, len(headings)))
     return _under(headings, signals_of(one, path))
 
 
@@ -86,4 +89,14 @@ def _under(headings: list[str], table: Table) -> Table:
         replace(column, heading=heading, content=None)
         for column, heading in zip(table.columns, headings, strict=True)
     ]
-    return table_of(table.path, stated, "columns")
+    under = table_of(table.path, stated, "columns")
+    return with_sensitivities(under, [column.unit for column in table.columns])
+
+
+def _units_of_text(path: Path, count: int) -> list[str]:
+    """Units that the heading of a table in text has; empty where it has none of so many columns."""
+    try:
+        units = [column.unit for column in read_table(path).columns]
+    except MeasurementError:
+        units = []
+    return units if len(units) == count else [""] * count

@@ -80,7 +80,9 @@ def _frequency_axis(path: Path, table: Table) -> Array:
     if channel == "time":
         raise MeasurementError(
             f"{path}: holds a time record ({column.name} [{column.unit}]), not an FRF; "
-            "an FRF is estimated from a folder of hammer records"
+            "of a hammer record one column is a force and one a displacement, velocity or "
+            "acceleration; of volts state the sensitivities: "
+            '--columns "time [s], force [2.25 mV/N], acceleration [10.2 mV/g]"'
         )
     if channel != "frequency":
         raise MeasurementError(

@@ -1,0 +1,72 @@
+"""Files with volts: the sensitivity that the user states gives the quantity; it is asked for."""
+
+import numpy as np
+import pytest
+
+from chatter.description.errors import InputError
+from chatter.io.hammer_records import read_hammer_record
+from chatter.studies.modal_test import modes
+from dynamics.frf.container import MeasurementError
+from tests.chatter.io.formats.test_files_people_have import (
+    ACCELERATION,
+    FORCE,
+    GRAVITY,
+    TIME,
+    as_lvm,
+    assert_is_the_record,
+)
+
+#: of a hammer with 2.25 mV/N and a sensor with 10 mV/g
+FORCE_MV, ACCELERATION_MV = 2.25 * FORCE, 10.0 * ACCELERATION / GRAVITY
+STATED = "time [s], force [2.25 mV/N], acceleration [10 mV/g]"
+
+
+def as_text(path, heading, scale):
+    rows = np.column_stack([TIME, scale * FORCE_MV, scale * ACCELERATION_MV])
+    np.savetxt(path, rows, delimiter=",", header=heading, comments="", fmt="%.12g")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("heading", "scale"),
+    [
+        ("Time [s],Hammer [mV],Acc [mV]", 1.0),
+        ("Time [s],Hammer [V],Acc [V]", 1e-3),
+        ("Time,Hammer,Acc", 1e-3),  # no unit is volts
+    ],
+)
+@pytest.mark.parametrize(
+    "stated", [STATED, "time [s], force [444.4444444 N/V], acceleration [100 g/V]"]
+)
+def test_volts_are_forces_and_accelerations_by_their_sensitivities(
+    tmp_path, heading, scale, stated
+):
+    path = as_text(tmp_path / "tap.csv", heading, scale)
+    assert_is_the_record(read_hammer_record(path, columns=stated))
+
+
+def test_volts_of_labview(tmp_path):
+    path = as_lvm(tmp_path / "tap.lvm")
+    text = path.read_text(encoding="utf-8").replace("kN\tg", "Volts\tVolts")
+    path.write_text(text, encoding="utf-8")
+    # the file has kN and g as volts
+    record = read_hammer_record(path, columns="time [s], force [1 mV/N], acceleration [1 V/g]")
+    assert_is_the_record(record)
+
+
+def test_volts_are_not_taken_for_newtons(tmp_path):
+    path = as_text(tmp_path / "tap.csv", "Time [s],Hammer [mV],Acc [mV]", 1.0)
+    with pytest.raises(MeasurementError, match=r"column 2 is in mV .* \[2\.5 mV/N\]"):
+        read_hammer_record(path, columns="time [s], force [N], acceleration [m/s^2]")
+
+
+def test_a_sensitivity_of_what_is_no_voltage_is_refused(tmp_path):
+    path = as_text(tmp_path / "tap.csv", "Time [s],Hammer [N],Acc [mV]", 1.0)
+    with pytest.raises(MeasurementError, match="column 2 is in N in the file"):
+        read_hammer_record(path, columns=STATED)
+
+
+def test_modes_of_volts_ask_for_the_sensitivities(tmp_path):
+    path = as_text(tmp_path / "tap.csv", "Time [s],Hammer [mV],Acc [mV]", 1.0)
+    with pytest.raises(InputError, match=r"of volts state the sensitivities: --columns"):
+        modes([path])
