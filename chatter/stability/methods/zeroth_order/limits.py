@@ -1,5 +1,7 @@
 """Zeroth-order limits of a model, for any tool and speed-dependent dynamics."""
 
+import math
+
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray
@@ -41,21 +43,24 @@ def _limits_of_structure(model: MillingModel, speeds: Array) -> ZeroOrderLimit:
         depth = model.case.cut.axial_depth
         some = speeds[:: -(-len(speeds) // _SPEEDS_FOR_DEPTH)]
         for _ in range(_DEPTH_STEPS):
-            lowest = _limits_of_delays(model, averaged, some).lowest_depth
+            lowest = limits_of_averages(model, averaged, some).lowest_depth
             if not np.isfinite(lowest) or abs(np.log(lowest / depth)) < _SAME_DEPTH:
                 break
             # half the step: what is cut grows faster than the depth
             depth = float(np.sqrt(depth * lowest))
             averaged = model.averaged_coefficients_at(depth)
-    return _limits_of_delays(model, averaged, speeds)
+    return limits_of_averages(model, averaged, speeds)
 
 
-def _limits_of_delays(
+def limits_of_averages(
     model: MillingModel, averaged: AveragedCoefficients, speeds: Array
 ) -> ZeroOrderLimit:
+    """Limits of averaged coefficients; line by line only where teeth have delays of their own."""
     delays, means = averaged
     # a uniform pitch with the same mean gives the scale of the lowest limit
     even = zero_order_limit(*model.receptance, means.sum(axis=0), model.teeth, speeds)
+    if delays.size == 1 and math.isclose(delays[0], 2.0 * math.pi / model.teeth, rel_tol=1e-9):
+        return even
     depth, frequency = limits_of_delays(*model.receptance, delays, means, speeds)
     return even._replace(
         critical_depth=depth,
