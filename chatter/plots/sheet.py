@@ -26,6 +26,8 @@ _COLUMNS = 11
 _FONT = 8.5
 #: of the page, inch
 _MARGIN = 0.4
+#: characters of a title on one line, and of a long one on each of two
+_TITLE, _LONG_TITLE = 58, 72
 
 
 def _headers(units: UnitSystem) -> tuple[str, ...]:
@@ -57,7 +59,9 @@ def _page(one: CaseCuts) -> Figure:
     head, table, diagram, foot = figure.subplots(4, 1, height_ratios=[0.8, 1.7, 4.0, 0.6])
     for axes in (head, table, foot):
         axes.set_axis_off()
-    _write(head, 1.0, one.case.title or one.case.name, size=14.0)
+    title = one.case.title or one.case.name
+    is_long = len(title) > _TITLE
+    _write(head, 1.0, textwrap.fill(title, _LONG_TITLE, max_lines=2), 11.0 if is_long else 14.0)
     _write(head, 0.55, textwrap.fill(_set_up(one), 90))
     units = units_of(one.case)
     _draw_table(table, [row[1:] for row in rows_of(one, units)], _headers(units))

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import openpyxl
 import pytest
@@ -50,6 +51,18 @@ def test_the_depth_of_any_speed_is_below_every_limit(found):
     for one in found.cases:
         assert one.cuts[-1].name == "any speed"
         assert one.cuts[-1].axial_depth * 1e-3 < one.diagram.limits.critical_depth.min()
+
+
+@pytest.mark.parametrize("length", [60, 140, 400])
+def test_a_long_title_stays_on_the_page(found, length):
+    one = found.cases[0]
+    title = ("Finishing the wall of the housing, WIDE TOOL T03; " * 9)[:length]
+    (page,) = pages(replace(found, cases=(one._replace(case=one.case.patch({"title": title})),)))
+    page.canvas.draw()
+    (shown,) = (text for text in page.axes[0].texts if text.get_text().startswith("Finishing"))
+    set_up = page.axes[0].texts[1].get_window_extent()
+    assert shown.get_window_extent().x1 < page.bbox.x1
+    assert shown.get_window_extent().y0 > set_up.y1
 
 
 def test_files(found, tmp_path):
