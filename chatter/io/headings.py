@@ -7,6 +7,7 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, dimension_of, measured_unit, parse
 from chatter.description.usual_units import UsualUnit, of_dimension
+from chatter.io.sensitivities import VOLTS
 
 #: name of a column -> dimension of its unit; "" for one without
 DIMENSIONS = {
@@ -121,7 +122,17 @@ def _factor(path: Path, heading: str, name: str, unit: str) -> float:
             return parse(f"1 {unit}", dimension).value
         return _receptance(unit)
     except (QuantityError, ValueError) as error:
-        raise InputError(f"{path}: {formatted(heading)}: {error}") from error
+        raise InputError(f"{path}: {formatted(heading)}: {error}{_of_volts(name, unit)}") from error
+
+
+def _of_volts(name: str, unit: str) -> str:
+    """How the sensitivity of a sensor is stated, where the file has volts."""
+    if unit not in VOLTS:
+        return ""
+    return (
+        f'; state the sensitivity, such as "{name} [500 N/V]" for a force, and all columns, by '
+        "--columns, or by columns of the run in measurement.toml"
+    )
 
 
 def _receptance(unit: str) -> float:

@@ -10,7 +10,7 @@ from chatter.io.table import Column, Table
 from dynamics.frf.container import MeasurementError
 
 #: unit of a voltage as files write it -> V
-_VOLTS = {
+VOLTS = {
     **dict.fromkeys(("V", "Volt", "Volts", "volt", "volts"), 1.0),
     **dict.fromkeys(("mV", "millivolts"), 1e-3),
     **dict.fromkeys(("uV", "\u00b5V", "\u03bcV"), 1e-6),
@@ -47,7 +47,7 @@ def _in_unit(table: Table, index: int, own_unit: str) -> Column:
     column = table.columns[index]
     found = _SENSITIVITY.fullmatch(column.unit.strip())
     if found is None:
-        if own_unit in _VOLTS and column.unit and column.unit not in _VOLTS:
+        if own_unit in VOLTS and column.unit and column.unit not in VOLTS:
             raise MeasurementError(
                 f"{table.path}: column {index + 1} is in {own_unit} in the file, and --columns "
                 f"states {column.heading}: state the sensitivity of the sensor, such as "
@@ -57,16 +57,16 @@ def _in_unit(table: Table, index: int, own_unit: str) -> Column:
         return column
     number, unit, per = float(found["number"]), found["unit"], found["per"].strip()
     per = per[1:-1] if per.startswith("(") and per.endswith(")") else per
-    if unit not in _VOLTS and per not in _VOLTS:
+    if unit not in VOLTS and per not in VOLTS:
         return column
-    if (own_unit and own_unit not in _VOLTS) or number == 0.0:
+    if (own_unit and own_unit not in VOLTS) or number == 0.0:
         raise MeasurementError(
             f"{table.path}: column {index + 1} is in {own_unit or 'V'} in the file, and --columns "
             f"states {column.heading}: a sensitivity above zero, of volts, was expected"
         )
-    volts = table.numbers(index) * _VOLTS[own_unit or "V"]
-    if unit in _VOLTS:
+    volts = table.numbers(index) * VOLTS[own_unit or "V"]
+    if unit in VOLTS:
         return replace(
-            column, heading=f"{column.name} [{per}]", cells=volts / (number * _VOLTS[unit])
+            column, heading=f"{column.name} [{per}]", cells=volts / (number * VOLTS[unit])
         )
-    return replace(column, heading=f"{column.name} [{unit}]", cells=volts * number / _VOLTS[per])
+    return replace(column, heading=f"{column.name} [{unit}]", cells=volts * number / VOLTS[per])

@@ -5,6 +5,7 @@ import pytest
 
 from chatter.description.errors import InputError
 from chatter.io.hammer_records import read_hammer_record
+from chatter.io.signals import read_signals
 from chatter.studies.modal_test import modes
 from dynamics.frf.container import MeasurementError
 from tests.chatter.io.formats.test_files_people_have import (
@@ -64,6 +65,17 @@ def test_a_sensitivity_of_what_is_no_voltage_is_refused(tmp_path):
     path = as_text(tmp_path / "tap.csv", "Time [s],Hammer [N],Acc [mV]", 1.0)
     with pytest.raises(MeasurementError, match="column 2 is in N in the file"):
         read_hammer_record(path, columns=STATED)
+
+
+def test_forces_in_volts_are_read_by_a_sensitivity_and_ask_for_it(tmp_path):
+    path = as_text(tmp_path / "cut.csv", "Time [s],Fx [mV],ax [mV]", 1.0)
+    found = read_signals(path, columns="time [s], Fx [2.25 mV/N], ax [10 mV/g]")
+    np.testing.assert_allclose(found["Fx"], FORCE, atol=1e-6)
+    np.testing.assert_allclose(found["ax"], ACCELERATION, atol=1e-6)
+    with pytest.raises(
+        InputError, match=r'a force is required.*"Fx \[500 N/V\]".*columns of the run'
+    ):
+        read_signals(path)
 
 
 def test_modes_of_volts_ask_for_the_sensitivities(tmp_path):
