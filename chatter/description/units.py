@@ -133,7 +133,13 @@ _MEASURED_WORDS = {
     # as LabVIEW and others write them out
     **{one: one.lower() for one in ("Newton", "Newtons", "Volt", "Volts", "Pascal", "Pascals")},
     **{one: one.lower() for one in ("Second", "Seconds", "Ampere", "Amperes", "Watt", "Watts")},
-    **{"gs": "standard_gravity", "Amps": "ampere", "amps": "ampere"},
+    **{
+        "gs": "standard_gravity",
+        "gn": "standard_gravity",
+        "g_n": "standard_gravity",
+        "Amps": "ampere",
+        "amps": "ampere",
+    },
 }
 _LONGEST_TEXT = 100
 
@@ -275,7 +281,7 @@ def measured_unit(unit: str) -> MeasuredUnit | None:
 
 def measured_by_library(unit: str) -> MeasuredUnit | None:
     """Unit of a measured file by the units library; as `measured_unit`, which knows many."""
-    unit = speed_of_any(unit) or unit
+    unit = re.sub(r"\bg(0|₀)(?!\w)", "gn", speed_of_any(unit) or unit)
     known = _unit_of_library(unit.strip(), _MEASURED_WORDS) if len(unit) <= _LONGEST_TEXT else None
     if known is None or not known[2]:
         return None
