@@ -22,6 +22,7 @@ from chatter.stability.model import milling_model
 from chatter.stability.neglected_effects import NeglectedEffect, lowest_factor, reasons_of
 from chatter.stability.registry import chosen_method
 from chatter.stability.resting_friction import neglected_resting_friction
+from chatter.studies.executor import ThreadExecutor
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
@@ -280,6 +281,9 @@ def uncertainty(
     paths = tuple(one.path for one in parameters)
     limits_of_sample = partial(_sample_record, case, paths, grid, method)
     numbered = [(number, row.tolist()) for number, row in enumerate(values, start=1)]
+    if execution.get("cluster") is None:
+        # sweeps of a sample leave threads idle between them
+        execution["cluster"] = ThreadExecutor()
     inputs = (method or "", repr(grid.speeds.tolist()), repr(grid.depths[-1]))
     with ResultCache(execution.get("folder"), "uncertainty", fingerprint(case), *inputs) as cache:
         keys = [cache.key(repr(row)) for _, row in numbered]

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import re
+import threading
 
 import numpy as np
 import pytest
@@ -11,6 +12,8 @@ from scipy.stats import norm, truncnorm
 
 from chatter.description.case import loads
 from chatter.description.errors import InputError, RunError
+from chatter.engine.parallel import SerialExecutor
+from chatter.studies import executor
 from chatter.studies.uncertainty import monte_carlo as module
 from chatter.studies.uncertainty.latin_hypercube import samples
 from chatter.studies.uncertainty.monte_carlo import uncertainty
@@ -142,11 +145,12 @@ def test_files_and_resumption(case, tmp_path, monkeypatch):
 
     with monkeypatch.context() as patch:
         patch.setattr(module, "sample_limits", limits)
-        with pytest.raises(RunError, match="7 of 30 samples are finished"):
+        with pytest.raises(RunError, match=r"[1-7] of 30 samples are finished") as interrupted:
             uncertainty(case, 30, folder=tmp_path, **FEW)
+    finished = int(re.search(r"(\d) of 30", str(interrupted.value))[1])
     told = []
     found = uncertainty(case, 30, folder=tmp_path, resumed=lambda *a: told.append(a), **FEW)
-    assert told == [(7, 30)]
+    assert told == [(finished, 30)]
     assert np.array_equal(found.limits, uncertainty(case, 30, **FEW).limits)
     found.save(tmp_path)
     rows = list(csv.DictReader((tmp_path / "uncertainty.csv").read_text().splitlines()))
@@ -160,6 +164,23 @@ def test_files_and_resumption(case, tmp_path, monkeypatch):
     assert summary["convergence"][-1]["samples"] == 30
     assert len((tmp_path / "samples.csv").read_text().splitlines()) == 31
     assert (tmp_path / "uncertainty.png").stat().st_size > 10_000
+
+
+def test_samples_are_computed_side_by_side(case, monkeypatch):
+    """Sweeps of one sample after the other left a processor idle between them."""
+    together = threading.Barrier(2, timeout=60.0)
+    real = module.sample_limits
+
+    def limits(*args):
+        together.wait()
+        return real(*args)
+
+    monkeypatch.setattr(executor, "worker_count", lambda: 2)
+    monkeypatch.setattr(module, "sample_limits", limits)
+    side_by_side = uncertainty(case, 4, **FEW)
+    monkeypatch.setattr(module, "sample_limits", real)
+    one_by_one = uncertainty(case, 4, cluster=SerialExecutor(), **FEW)
+    assert np.array_equal(side_by_side.limits, one_by_one.limits)
 
 
 def test_limits_that_are_not_found_stay_above_all_others():
