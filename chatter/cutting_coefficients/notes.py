@@ -79,7 +79,12 @@ def _of_mean_forces(found: Coefficients) -> list[str]:
             "measurement.toml tells both by [channels.NAME] with on, direction and "
             'sign = "unknown"'
         )
-    if not found.has_material:
+    if found.pulls_at_the_work:
+        notes.append(
+            "no [material] section is written: the radial force draws the tool into the work by "
+            "more than half of the tangential force; are two channels exchanged?"
+        )
+    elif not found.has_material:
         notes.append("no [material] section is written: the tangential force does not cut")
     if found.holdout is None:
         notes.append("too few cuts to judge the law by one held out")

@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 _LINEAR_KEYS = 6
 #: normal rake that a milling cutter has less than, rad
 _MOST_RAKE = 0.25 * math.pi
+#: radial force over the tangential one by which a sharp edge draws itself into the work at the most
+_MOST_PULL = 0.5
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -200,8 +202,19 @@ class Coefficients(NotebookResult):
 
     @property
     def has_material(self) -> bool:
-        """Whether the law cuts: the tangential coefficient is above zero."""
-        return self.by_waveforms or float(self.kept.values[0]) > 0.0
+        """Whether the law cuts: by its tangential force, and without a large radial pull."""
+        return self.by_waveforms or (self._tangential > 0.0 and not self.pulls_at_the_work)
+
+    @property
+    def _tangential(self) -> float:
+        """Tangential coefficient of the mean forces, SI."""
+        return float(self.kept.values[0])
+
+    @property
+    def pulls_at_the_work(self) -> bool:
+        """Whether the radial force draws the tool into the work as no chip does."""
+        found = dict(zip(self.kept.law.keys, self.kept.values, strict=True))
+        return bool(found.get("Krc", 0.0) < -_MOST_PULL * self._tangential < 0.0)
 
     @property
     def linear_law_holds(self) -> bool | None:
@@ -354,6 +367,8 @@ class Coefficients(NotebookResult):
         document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {cuts}"))
         if self.linear_law_holds is False and self.kept.law.law == "linear":
             document.add(tomlkit.comment("the linear law leaves more than the readings scatter"))
+        if np.any(self.kept.values[self.kept.law.cutting] < 0.0):
+            document.add(tomlkit.comment("a cutting coefficient is below zero: check the channels"))
         document.add("material", section)
         return tomlkit.dumps(document)
 
@@ -383,8 +398,8 @@ class Coefficients(NotebookResult):
         """
         if not self.has_material:
             raise InputError(
-                f"{self.measurement.folder}: no row is kept: the tangential coefficient is below "
-                "zero; a direction or a sense may be wrong"
+                f"{self.measurement.folder}: no row is kept: the forces do not cut; a direction "
+                "or a sense may be wrong, or channels exchanged"
             )
         case = self.measurement.case
         feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]

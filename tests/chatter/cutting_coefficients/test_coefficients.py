@@ -111,6 +111,18 @@ def test_what_is_written_is_a_section_of_a_case(tmp_path):
     assert 0.0 < case.deviations()["material.Ktc"] < 0.05 * TRUE["Ktc"]
 
 
+def test_exchanged_channels_make_no_material(tmp_path):
+    """Fx and Fy of a half-immersed tool exchanged: the radial force seems to pull at the work."""
+    arc = (0.5 * math.pi, math.pi)
+    folder = records(tmp_path, arc, "down", width='radial_depth = "6 mm"')
+    for file in folder.glob("feed_*.csv"):
+        text = file.read_text(encoding="utf-8").replace("Fx [N],Fy [N]", "Fy [N],Fx [N]")
+        file.write_text(text, encoding="utf-8")
+    found = chatter.coefficients(folder)
+    assert any("are two channels exchanged?" in note for note in found.notes)
+    assert "material.toml" not in {path.name for path in found.save(tmp_path / "out")}
+
+
 @pytest.mark.nightly
 def test_unknown_senses_of_a_dynamometer_are_found(tmp_path):
     channels = "".join(
