@@ -41,7 +41,7 @@ _TOLD: Mapping[Role, re.Pattern[str]] = {
         r"^v$|^v ?(act|ist)|^n ?(act|ist)"
     ),
     "effort": re.compile(
-        r"force|torque|current|moment|strom|kraft|couple|courant|forza|coppia|corrente|fuerza|"
+        r"force|torque|effort|current|moment|strom|kraft|couple|courant|forza|coppia|corrente|fuerza|"
         r"^par\b|corriente|^i ?(act(ual)?|ist(wert)?|q)\b|^i\(q\)|^m ?(act|ist)"
     ),
 }

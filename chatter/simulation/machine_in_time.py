@@ -20,7 +20,7 @@ from dynamics.control.sampling import ControlError
 from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.machine.tables import StructureTables, machine_tables
 from dynamics.structure.linear_structure import StructureError
-from dynamics.trajectory.set_points import SetPoints
+from dynamics.trajectory.set_points import SetPoints, interpolation_cycle
 
 #: steps of the time that a tooth is in the cut, and between teeth, at the least
 _STEPS_A_CUT = 40
@@ -145,8 +145,8 @@ def _set_points(
 def _cycle(cut: MachineCut) -> float:
     """Interpolation cycle, s."""
     drives = cut.machine.drives
-    return max(
-        (drive.controller.position.timing.sample_time for drive in drives), default=cut.file.step
+    return interpolation_cycle(
+        (drive.controller.position.timing.sample_time for drive in drives), cut.file.step
     )
 
 

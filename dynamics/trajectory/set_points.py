@@ -1,6 +1,7 @@
 """Set points at the interpolation cycle, as the position controllers read them."""
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,15 @@ class SetPoints(NamedTuple):
     velocity: NDArray[np.float64]  # m/s, (n, axes)
     acceleration: NDArray[np.float64]  # m/s^2, (n, axes)
     steps: int  # of the simulation per cycle
+
+
+def interpolation_cycle(sample_times: Iterable[float], step: float) -> float:
+    """Longest cycle, s, of which the samples of all position loops are multiples; a step without.
+
+    Each loop then has a set point of its own at every sample; a longer one holds it over several
+    samples of the fast loops, which lag behind by half of that.
+    """
+    return step * (math.gcd(*(round(time / step) for time in sample_times)) or 1)
 
 
 def set_points(

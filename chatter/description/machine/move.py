@@ -90,7 +90,9 @@ class MoveSection(StateSection):
         None, description="of an NC program: by blocks (default), or as fast as every axis lets it"
     )
     cycle: quantity("time", above=0.0) | None = Field(
-        None, description="interpolation cycle; that of the slowest position loop by default"
+        None,
+        description="interpolation cycle, over which set points are held; by default the longest "
+        "that gives each position loop a set point at every sample",
     )
     standstill: quantity("time", at_least=0.0) = Field(0.0, description="before the move")
     afterwards: quantity("time", at_least=0.0) = Field(0.1, description="simulated behind its end")

@@ -34,6 +34,7 @@ from dynamics.machine.harmonic import receptance
 from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.motion import TrajectoryError
+from dynamics.trajectory.set_points import interpolation_cycle
 
 Section = TypeVar("Section", FrfSection, MoveSection)
 
@@ -224,8 +225,10 @@ def file_move(
         course = course_of(section)
     except TrajectoryError as error:
         raise InputError(f"{where}: {error}") from error
-    cycles = [drive.controller.position.timing.sample_time for drive in machine.drives]
-    cycle = section.cycle if section.cycle is not None else max(cycles, default=file.step)
+    cycle = section.cycle
+    if cycle is None:
+        loops = (drive.controller.position for drive in machine.drives)
+        cycle = interpolation_cycle((loop.timing.sample_time for loop in loops), file.step)
     plan = MovePlan(
         course.trajectory, section.axes, cycle, section.standstill, section.afterwards, course.path
     )

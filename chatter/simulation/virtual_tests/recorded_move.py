@@ -17,6 +17,7 @@ from dynamics.machine.description import Machine
 from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.trajectory.motion import TrajectoryError
 from dynamics.trajectory.recorded import RecordedMotion
+from dynamics.trajectory.set_points import interpolation_cycle
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,9 @@ def recorded_move(case: Case, axis: str, time: Array, command: Array) -> MoveRes
     travel = command - command[0]
     machine, along = _machine(case, axis, float(travel.min()), float(travel.max()))
     drives = machine.drives
-    cycle = max((one.controller.position.timing.sample_time for one in drives), default=file.step)
+    cycle = interpolation_cycle(
+        (one.controller.position.timing.sample_time for one in drives), file.step
+    )
     plan = MovePlan(motion, (axis,), cycle, afterwards=0.0)
     return axes_moved(file.title or file.name, machine, file.step, plan, along=along)
 

@@ -25,7 +25,7 @@ from dynamics.frf.excitation.signal import ExcitationError, PeriodicSignal, Puls
 from dynamics.frf.excitation.transient import NotDiedAwayError, cut_at_pulses, frf_of_transients
 from dynamics.machine.description import Machine
 from dynamics.trajectory.periodic import ConstantSpeedMove
-from dynamics.trajectory.set_points import SetPoints, set_points
+from dynamics.trajectory.set_points import SetPoints, interpolation_cycle, set_points
 
 #: a half-sine blow this long over the highest frequency still excites it at a third of its level
 _CONTACT = 0.9
@@ -262,8 +262,8 @@ def _at_speed(
     """Set points of axes at constant speed, for longer than a duration."""
     if not velocity:
         return None
-    cycle = max(
-        (drive.controller.position.timing.sample_time for drive in machine.drives), default=step
+    cycle = interpolation_cycle(
+        (drive.controller.position.timing.sample_time for drive in machine.drives), step
     )
     ways = np.array([velocity.get(axis, 0.0) * (duration + 2.0 * cycle) for axis in machine.axes])
     speed = float(np.linalg.norm([velocity.get(axis, 0.0) for axis in machine.axes]))

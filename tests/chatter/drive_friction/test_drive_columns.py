@@ -30,6 +30,11 @@ def one(path, **settings):
     ("heading", "columns", "settings"),
     [
         ("time [s],position [mm],force [N]", (TIME, 1e3 * POSITION, FORCE), {}),
+        (
+            "time [s],X set [m],X motor [m],X scale [m],X tool [m],X velocity [m/s],X effort [N*m]",
+            (TIME, 0.0 * FORCE, POSITION, POSITION, POSITION, VELOCITY, TORQUE),
+            {"lead": LEAD},
+        ),
         ("t [ms],velocity [mm/s],force [kN]", (1e3 * TIME, 1e3 * VELOCITY, 1e-3 * FORCE), {}),
         (
             "time [s],motor speed [rpm],torque [Nm]",
