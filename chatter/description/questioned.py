@@ -37,9 +37,11 @@ _DIAMETER = _Usual(0.02e-3, 1.0, "mm", 1e3, "milling cutters")
 LONGEST_FLUTES, _COMMON_FLUTES = 8.0, 3.0
 #: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
 _CARBIDE, _STIFFER = 650e9, 1.5
-#: feed per tooth over the diameter, and radial over tangential cutting pressure, beyond which they
-#: are asked about
+#: feed per tooth over the diameter, and radial or axial over tangential cutting pressure, beyond
+#: which they are asked about
 _LARGEST_FEED, _LARGEST_RADIAL = 0.05, 2.0
+#: coefficients whose ratio to the tangential one is asked about, and what is usual
+_BESIDE_TANGENTIAL = (("Krc", "radial", "0.1 to 1"), ("Kac", "axial", "less than 1"))
 #: angle of a tool axis from the normal of the surface beyond which it is asked about, rad
 _LARGEST_LEAN = math.radians(60.0)
 #: growth of vibration from tooth to tooth beyond which the input is in doubt
@@ -87,12 +89,14 @@ def _questions_of_material(case: Case) -> list[str]:
         value = getattr(material, key)
         if value and value > 0.0:
             asked += _question(f"material.{key}", value, _EDGE, case)
-    if material.Ktc and material.Krc and material.Krc > _LARGEST_RADIAL * material.Ktc:
-        asked.append(
-            f"material.Krc: is {units_of(case).pressure.text(material.Krc)} meant? the radial "
-            f"coefficient is {material.Krc / material.Ktc:.2g} times the tangential one; most "
-            "metals have 0.1 to 1"
-        )
+    for key, direction, usual in _BESIDE_TANGENTIAL:
+        value = getattr(material, key)
+        if material.Ktc and value and abs(value) > _LARGEST_RADIAL * material.Ktc:
+            asked.append(
+                f"material.{key}: is {units_of(case).pressure.text(value)} meant? the {direction} "
+                f"coefficient is {value / material.Ktc:.2g} times the tangential one; most "
+                f"metals have {usual}"
+            )
     return asked
 
 

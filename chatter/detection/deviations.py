@@ -54,13 +54,17 @@ def noise_of(differences: NDArray[np.float64]) -> float:
 
 
 def directions_of(matrix: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
-    """Left singular vectors and singular values of a wide matrix, the strongest first.
+    """Left singular vectors and singular values of a matrix, the strongest first.
 
-    From the product with its transpose, which is far quicker and is good for values down to 1e-8 of
-    the largest.
+    From the smaller of the products with its transpose, which is far quicker and is good for values
+    down to 1e-8 of the largest.
     """
-    squares, left = np.linalg.eigh(matrix @ matrix.T)
-    return left[:, ::-1], np.sqrt(np.maximum(squares[::-1], 0.0))
+    if len(matrix) <= matrix.shape[1]:
+        squares, left = np.linalg.eigh(matrix @ matrix.T)
+        return left[:, ::-1], np.sqrt(np.maximum(squares[::-1], 0.0))
+    squares, right = np.linalg.eigh(matrix.T @ matrix)
+    singular = np.sqrt(np.maximum(squares[::-1], 0.0))
+    return matrix @ right[:, ::-1] / np.maximum(singular, 1e-8 * singular[0] + 1e-300), singular
 
 
 def growth_rate_of(sizes: NDArray[np.float64]) -> tuple[float, float]:

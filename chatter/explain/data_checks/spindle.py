@@ -28,6 +28,8 @@ _STRONGER = 1.5
 _BELOW_A_TOOTH = 0.85
 _BESIDE = 0.8
 _BINS = 72
+#: revolutions at the end of a record that are looked at, at the most: they tell a speed to 1e-4
+_MOST_REVOLUTIONS = 100
 _MOST_TEETH = 16
 #: share of the runs in which another number of teeth must be counted
 _TEETH_SHARE = 0.3
@@ -128,7 +130,7 @@ def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
     one clearly less. Speeds at which another whole number of tooth periods makes a revolution are
     not examined.
     """
-    chosen = settled(run, declared)
+    chosen = _latest(run, declared)
     time = run.signals["time"][chosen]
     signals = [values[chosen] for values in forces(run)]
     revolutions = (time[-1] - time[0]) * declared / (2.0 * math.pi)
@@ -149,6 +151,13 @@ def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
     # chatter may be a multiple of another revolution, but the teeth do not pass with it
     passing = [tooth_passing(time, signals, speed * teeth) for speed in (declared, found)]
     return found if passing[1] > _STRONGER * passing[0] else None
+
+
+def _latest(run: Run, speed: float) -> slice:
+    """Last revolutions of the settled part of a record."""
+    time = run.signals["time"]
+    begin = np.searchsorted(time, time[-1] - _MOST_REVOLUTIONS * 2.0 * math.pi / speed)
+    return slice(max(int(begin), settled(run, speed).start), None)
 
 
 def tooth_passing(time: Vector, signals: list[Vector], frequency: float) -> float:

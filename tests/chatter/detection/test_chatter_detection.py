@@ -9,6 +9,7 @@ from scipy.linalg import expm
 from chatter.description.errors import InputError
 from chatter.detection.chatter_detection import detect_chatter
 from chatter.detection.cut_record import CutRecord
+from chatter.detection.deviations import directions_of
 from tests.chatter.detection import made_up_signals as made
 
 TRUTH_TURNS = 400
@@ -249,3 +250,14 @@ def test_a_tool_at_rest_is_stable():
 def test_wrong_input_is_named(key, value, words):
     with pytest.raises(InputError, match=words):
         CutRecord(**{**GOOD, key: value})
+
+
+@pytest.mark.parametrize("shape", [(5, 40), (3000, 6)])
+def test_directions_are_those_of_the_singular_value_decomposition(shape):
+    """Of a long record of short periods there are as many as a period has samples."""
+    matrix = np.random.default_rng(2).standard_normal(shape)
+    left, singular = directions_of(matrix)
+    vectors, values, _ = np.linalg.svd(matrix, full_matrices=False)
+    assert left.shape == vectors.shape
+    assert singular == pytest.approx(values, rel=1e-9)
+    assert np.abs(np.sum(left * vectors, axis=0)) == pytest.approx(1.0, abs=1e-9)

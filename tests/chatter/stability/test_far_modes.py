@@ -2,11 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
 import chatter
 from chatter.description.case import loads
 from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.multipliers import points_of_periods
 from chatter.stability.model import milling_model
 
 CASE = """
@@ -53,3 +55,20 @@ def test_its_table_does_not_hold_all_its_turns():
     assert cut.response.furthest.max() < 2.0 * math.pi * 2000.0 / 10.0
     alone = element_cut(milling_model(loads(CASE)), 1e-3)
     assert cut.longest == pytest.approx(alone.longest / 16.0)
+
+
+def test_a_coefficient_beyond_all_metals_asks_for_no_elements_without_end():
+    """An axial coefficient moves no mode in the plane; 1e12 MPa filled the memory."""
+    model, absurd = (
+        milling_model(loads(CASE).patch({"material.Kac": kac})) for kac in ("0 MPa", "-1e12 MPa")
+    )
+    speed, depth = np.array([600.0 * math.pi / 30.0]), np.array([1e-3])
+    points, more = (
+        int(points_of_periods(element_cut(one, 1e-3), speed, depth)[0]) for one in (model, absurd)
+    )
+    assert points <= more <= 12 * points
+
+
+def test_a_coefficient_that_acts_on_no_mode_leaves_the_limit():
+    text = CASE.replace('Krc = "200 MPa"', 'Krc = "200 MPa"\nKac = "-1e6 MPa"')
+    assert limit_of(text) == pytest.approx(limit_of(CASE), rel=1e-4)

@@ -25,6 +25,10 @@ _SAME_LENGTH = 1e-9
 #: speed, in powers of two
 _FEW_INTERVALS = 12
 _STEP_OF_MANY = 0.25
+#: by which a depth may shorten the waves: far above any limit, so that it needs no finer elements
+_MOST_STIFFENED = 10.0
+#: vibrations in a period of the tool that such a depth may make elements for
+_MOST_VIBRATIONS = 1000.0
 #: over so small an angle the speed is even, and a difference of times would be rounded, rad
 _EVEN = 1e-6
 
@@ -72,6 +76,14 @@ def _longest_span(rotation, angle):
     return min(slowest, angle + rotation.amplitude / rotation.frequency * swing_range(rotation))
 
 
+@njit(**LEAF_KERNEL)
+def _wavelengths(arrays, speed, depth):
+    """Waves at a depth, over those with no cut."""
+    stiffened = math.sqrt(1.0 + arrays.stiffening * depth / arrays.fastest**2)
+    vibrations = arrays.fastest * arrays.period_angle / (2.0 * math.pi * speed)
+    return min(stiffened, _MOST_STIFFENED, max(1.0, _MOST_VIBRATIONS / vibrations))
+
+
 @njit(**INNER_KERNEL)
 def element_counts(cut, borders, rotation, speed, depth):
     """Elements (I,) that each interval needs at a mean speed (rad/s), in every tool period."""
@@ -80,7 +92,7 @@ def element_counts(cut, borders, rotation, speed, depth):
     if counts.shape[0] > _FEW_INTERVALS or rotation.amplitude > 0.0:
         # one of so many would change its number at every speed, and nothing could be shared
         speed = speed_step(speed, _STEP_OF_MANY)
-    wavelengths = math.sqrt(1.0 + arrays.stiffening * depth / arrays.fastest**2)
+    wavelengths = _wavelengths(arrays, speed, depth)
     for i in range(counts.shape[0]):
         counts[i] = 1
         if borders.engaged[i] == 1:
