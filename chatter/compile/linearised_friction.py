@@ -7,10 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.machine.description import Machine
 from dynamics.machine.harmonic import Linearised, at_amplitude, at_rest, at_velocity, receptance
 from dynamics.reduction.modal_truncation import undamped_modes
 
+#: of all that a drive can turn: what free motions turn it by where rounding alone does
+_HELD = 1e-7
 #: velocity of a friction, m/s or rad/s, below which it rests
 RESTING = 1e-12
 
@@ -54,6 +57,18 @@ def closed_backlashes(machine: Machine) -> tuple[str, ...]:
     return (
         f"backlash ({listed}) is taken as closed, pressed on one flank by a steady load; a drive "
         "whose load reverses is softer than that (chatter move, chatter simulate)",
+    )
+
+
+def clamping_frictions(machine: Machine, taken: Mapping[str, Linearised]) -> tuple[str, ...]:
+    """Note on dry frictions at rest, which hold without giving way; empty without any."""
+    dry = [one.name for one in machine.frictions if isinstance(one.law, CoulombStribeck)]
+    holding = ", ".join(name for name in dry if taken[name] is at_rest)
+    if not holding:
+        return ()
+    return (
+        f'dry friction at rest ({holding}) holds like a clamp in what is linearised; law = "lugre" '
+        "has the spring of presliding, and a stated amplitude lets it slide",
     )
 
 
@@ -110,24 +125,28 @@ def rigid_motions(
     if not machine.drives:
         return [np.zeros(machine.structure.size) for _ in several]
     modes = undamped_modes(machine.structure)
-    free = modes.shapes[:, modes.frequency == 0.0]
-    return [_free_motion(machine, free, axes) for axes in several]
-
-
-def _free_motion(
-    machine: Machine, free: NDArray[np.float64], axes: Mapping[str, float]
-) -> NDArray[np.float64]:
-    """Motion (n,) of the free motions (n, k) in which axes move by given lengths."""
     rows = np.array([drive.row for drive in machine.drives])
+    turned = rows @ modes.shapes
+    free = modes.frequency == 0.0
+    # a drive that no free motion turns, but for rounding, is held
+    held = np.linalg.norm(turned[:, free], axis=1) < _HELD * np.linalg.norm(turned, axis=1)
+    rigid = np.where(held[:, None], 0.0, turned[:, free])
+    return [modes.shapes[:, free] @ _shares(machine, rigid, axes) for axes in several]
+
+
+def _shares(
+    machine: Machine, rigid: NDArray[np.float64], axes: Mapping[str, float]
+) -> NDArray[np.float64]:
+    """Shares (k,) of the free motions, which turn the drives by (d, k), that move axes so far."""
     wanted = np.array(
         [
             axes.get(drive.axis, 0.0) / drive.controller.measuring.transmission
             for drive in machine.drives
         ]
     )
-    share, *_ = np.linalg.lstsq(rows @ free, wanted, rcond=None)
-    reached = rows @ free @ share
+    share, *_ = np.linalg.lstsq(rigid, wanted, rcond=None)
+    reached = rigid @ share
     if np.max(np.abs(reached - wanted)) > 1e-6 * np.max(np.abs(wanted), initial=1e-300):
         moved = ", ".join(axes)
         raise InputError(f"axes {moved} cannot move freely: something holds them besides the drive")
-    return free @ share
+    return share

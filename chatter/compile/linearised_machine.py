@@ -156,10 +156,8 @@ class LinearisedMachine:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed."""
-        notes = [
-            *self.cut.notes,
-            f"dynamics of {self.cut.file.name}, linearised, its control loops closed",
-        ]
+        loops = "its control loops closed" if self.cut.machine.drives else "no axis under control"
+        notes = [*self.cut.notes, f"dynamics of {self.cut.file.name}, linearised, {loops}"]
         if self.cut.machine.frictions:
             amplitude = self.case.structure.amplitude_at_frictions
             others = (

@@ -42,6 +42,8 @@ def plot_mode_shapes(found: ModeShapes) -> Figure:
         axes.set_title(f"{found.frequency[place]:.4g} Hz", fontsize=10)
         axes.set_aspect("equal", "datalim")
         axes.set_xlabel("[mm]")
+        # labels such as -1500 run into each other where there are more
+        axes.locator_params(axis="x", nbins=4)
         style.finish(axes)
     of_all = f"first {shown} of {len(found.frequency)} mode shapes"
     figure.suptitle(f"{found.machine}: {of_all}, enlarged; grey: at rest", fontsize=12)

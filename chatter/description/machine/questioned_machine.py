@@ -32,10 +32,14 @@ _IN_DRIVE = {
     "bearing_stiffness": _Usual(1e6, 1e11, "N/um", 1e-6, "bearings of screws"),
     "mesh_stiffness": _Usual(1e6, 1e11, "N/um", 1e-6, "racks"),
     "pinion_radius": _Usual(2e-3, 2.0, "mm", 1e3, "pinions"),
+    "backlash": _Usual(0.0, 3e-3, "mm", 1e3, "nuts and pinions"),
 }
 _GAIN = _Usual(0.5, 2e3, "1/s", 1.0, "position loops of feed drives")
 _INTEGRAL_TIME = _Usual(0.1e-3, 10.0, "ms", 1e3, "velocity loops")
 _TIME_CONSTANT = _Usual(1e-6, 50e-3, "ms", 1e3, "current loops")
+_FED_FORWARD = _Usual(0.0, 1.5, "%", 100.0, "feedforwards of velocity")
+#: times what an axis moves: inertia fed forward that is none of it
+_FAR_ABOVE = 3.0
 #: mass over the volume of its block: a frame of tubes is light, tungsten is dense
 _DENSITY = _Usual(20.0, 25e3, "kg/m^3", 1.0, "parts of machines")
 _STEP = _Usual(0.5e-6, 2e-3, "us", 1e6, "runs of machines in time")
@@ -48,7 +52,42 @@ def questions_of_machine(file: MachineFile) -> list[str]:
         asked += _question_of_density(f"body.{name}.mass", body)
     for name, axis in file.axis.items():
         asked += _questions_of_axis(f"axis.{name}", axis)
+        asked += _question_of_inertia_fed_forward(f"axis.{name}", axis, file)
+    for name, law in file.friction.items():
+        if law.static is not None and law.coulomb is not None and law.static < law.coulomb:
+            asked.append(
+                f"friction.{name}.static: is {law.static / law.coulomb:.3g} times coulomb meant? "
+                "friction is seldom less at the onset of sliding than in motion"
+            )
     return asked
+
+
+def _question_of_inertia_fed_forward(
+    path: str, axis: AxisSection, file: MachineFile
+) -> Iterator[str]:
+    """Ask about more inertia than drive and rigid bodies of the axis have, where all are known."""
+    carried = axis.carries or [axis.moving]
+    if axis.control is None or axis.drive is None or any(one not in file.body for one in carried):
+        return
+    drive = axis.drive
+    if drive.lead is not None:
+        transmission = abs(drive.lead) / (2.0 * np.pi)
+    elif drive.pinion_radius is not None:
+        transmission = drive.pinion_radius / (drive.gear_ratio or 1.0)
+    elif drive.kind == "linear motor":
+        transmission = 1.0
+    else:
+        return
+    turning = (drive.motor_inertia or 0.0) + (drive.screw_inertia or 0.0)
+    turning += sum(motor.inertia for motor in drive.motors)
+    total = turning + transmission**2 * sum(file.body[one].mass for one in carried)
+    given = axis.control.feedforward.inertia
+    if given > _FAR_ABOVE * total:
+        unit = "kg" if drive.kind == "linear motor" else "kg*m^2"
+        yield (
+            f"{path}.control.feedforward.inertia: is {given:.4g} {unit} meant? the drive and what "
+            f"the axis carries have {total:.3g} {unit} at the motor"
+        )
 
 
 def questions_of_positions(file: MachineFile, positions: Mapping[str, float]) -> list[str]:
@@ -116,6 +155,8 @@ def _questions_of_axis(path: str, axis: AxisSection) -> Iterator[str]:
         yield f"{path}.control.position.gain: is 0 meant? nothing holds the position of the axis"
     else:
         yield from _question(f"{path}.control.position.gain", position.gain, _GAIN)
+    fed = f"{path}.control.feedforward.velocity"
+    yield from _question(fed, control.feedforward.velocity, _FED_FORWARD)
     if velocity.integral_time is not None:
         at = f"{path}.control.velocity.integral_time"
         yield from _question(at, velocity.integral_time, _INTEGRAL_TIME)

@@ -8,7 +8,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import closed_backlashes, linearised_frictions
+from chatter.compile.linearised_friction import (
+    clamping_frictions,
+    closed_backlashes,
+    linearised_frictions,
+)
 from chatter.compile.machine_along_axes import StateOfMachine, machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
@@ -184,7 +188,11 @@ def _one_frf(
         tested,
         "torque" if is_rotation(file, section.excite) else "force",
         "rotation" if is_rotation(file, section.read or section.excite) else "displacement",
-        (*file.questions_of_positions(section.position), *closed_backlashes(machine)),
+        (
+            *file.questions_of_positions(section.position),
+            *closed_backlashes(machine),
+            *clamping_frictions(machine, frictions),
+        ),
     )
 
 

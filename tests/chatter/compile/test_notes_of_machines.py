@@ -37,6 +37,11 @@ def test_old_keys_are_noted(case):
         assert any("head.toml" in note and "positions" in note for note in notes)
 
 
+def test_a_machine_without_a_drive_has_no_closed_loops(case):
+    (note,) = (note for note in machine_structure(case).notes if note.startswith("dynamics of"))
+    assert note.endswith("head.toml, linearised, no axis under control")
+
+
 def test_what_modes_miss_is_told_where_the_structure_resonates():
     """A mode of 20 Hz, far below those of the structure, is missed; those of the structure less."""
     lines = np.linspace(5.0, 200.0, 1951)

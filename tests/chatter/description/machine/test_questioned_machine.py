@@ -35,6 +35,15 @@ def test_nothing_is_asked_of_the_machines_of_the_examples(path):
         ("axis.X.control.position.gain", "10 1/h", "position.gain: is 0.0027778 1/s meant?"),
         ("axis.X.control.velocity.integral_time", 100, "integral_time: is 1e+05 ms meant?"),
         ("axis.X.control.current.time_constant", "400 ms", "time_constant: is 400 ms meant?"),
+        # 100 % is 1
+        ("axis.X.control.feedforward.velocity", 100, "velocity: is 10000 % meant?"),
+        # 0.0045 + 0.0015 + 152.2 (0.012 / 2 pi)^2
+        (
+            "axis.X.control.feedforward.inertia",
+            "6.56 kg*m^2",
+            "is 6.56 kg*m^2 meant? the drive and what the axis carries have 0.00656 kg*m^2",
+        ),
+        ("axis.X.drive.backlash", "40 mm", "axis.X.drive.backlash: is 40 mm meant?"),
         ("axis.X.control", None, "axis.X: has neither control nor brake: its motor turns freely"),
         # 0.35 m x 0.55 m x 0.5 m = 0.09625 m^3
         ("body.head.mass", "220 g", "is 0.22 kg meant? a block of its size would have 2.29 kg/m^3"),
@@ -46,6 +55,15 @@ def test_slips_are_asked_about_with_the_file(machine, path, value, asked):
     (note,) = machine.patch({path: value}).notes
     assert note.startswith(f"{FACE_MILL}: ")
     assert asked in note
+
+
+def test_static_friction_below_coulomb_friction_is_asked_about(machine):
+    law = {
+        "law": "coulomb-stribeck", "on": {"axis": "X"}, "coulomb": "200 N", "static": "100 N",
+        "stribeck_velocity": "1 mm/s",
+    }  # fmt: skip
+    (note,) = machine.patch({"friction.translation_x": law}).notes
+    assert "friction.translation_x.static: is 0.5 times coulomb meant?" in note
 
 
 def test_a_screw_to_the_left_is_not_asked_about(machine):

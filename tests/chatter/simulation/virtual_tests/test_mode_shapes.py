@@ -68,6 +68,19 @@ def test_files(shapes, tmp_path):
     assert (tmp_path / "mode-shapes.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_numbers_below_the_shapes_of_a_large_machine_stand_apart():
+    text = BLOCK.replace('["400 mm", "200 mm", "100 mm"]', '["600 mm", "3000 mm", "500 mm"]')
+    figure = chatter.mode_shapes(MachineFile.from_text(text)).plot()
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        low, high = axes.get_xlim()
+        ticks = [tick for tick in axes.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+        boxes = [tick.label1.get_window_extent() for tick in ticks]
+        gaps = [right.x0 - left.x1 for left, right in itertools.pairwise(boxes)]
+        # at least the width of a figure, a fifth of "-1000"
+        assert min(gaps) > 0.2 * boxes[0].width
+
+
 def test_the_command_gives_the_frequencies_and_writes_the_shapes(tmp_path):
     path = tmp_path / "block.toml"
     path.write_text(BLOCK)

@@ -117,6 +117,14 @@ def test_a_slow_loop_of_another_axis_does_not_hold_the_set_points_of_a_fast_one(
     assert lag == pytest.approx(0.1 * 2e-3, rel=0.03)
 
 
+def test_a_held_axis_beside_a_free_direction_is_refused(folder):
+    # as many free motions as the axes have, but along x, where nothing guides the table
+    stiffness = {"y": 1e9, "z": 1e9, "rx": 1e9, "ry": 1e9, "rz": 1e9}
+    blocked = load_machine(folder / "small.toml").patch({"connector.guide.stiffness": stiffness})
+    with pytest.raises(InputError, match="axes Y cannot move freely: something holds them"):
+        move(blocked, "fast")
+
+
 def test_what_a_move_wrote_moves_again(folder):
     file = load_machine(folder / "small.toml")
     move(file, "fast").save(folder)
