@@ -15,6 +15,7 @@ from chatter.simulation.perturbation.lyapunov_verdict import (
     lyapunov_verdict,
 )
 from chatter.simulation.result import SimulationResult
+from chatter.simulation.tool_course import ToolCourse
 from cutting.chip.discrete_chip import DiscreteCut
 from dynamics.modal.modes import inside_band
 
@@ -25,6 +26,8 @@ _LEAST_CYCLES = 12.0
 _DELAYED, _CARVED = 0.005, 0.03
 #: share of the lowest resonance or loop corner below which motion is no chatter
 _WELL_BELOW = 0.25
+#: share of the usual speed of a program above which it is at its feed
+_AT_FEED = 0.95
 #: helix angles within this, rad, are the same
 _SAME_HELIX = 1e-12
 
@@ -88,18 +91,35 @@ def _cut_record(result: SimulationResult) -> CutRecord:
     widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
     # flutes of different helix are no more alike than teeth out of true
     known = np.ptp(cutter.helix) <= _SAME_HELIX
+    rows = _before_the_last_stop(result)
     return CutRecord(
-        time=result.time,
-        spindle_angle=result.spindle_angle,
-        displacements=result.displacement,
+        time=result.time[rows],
+        spindle_angle=result.spindle_angle[rows],
+        displacements=result.displacement[rows],
         tooth_angles=np.sort(cutter.tooth_angles),
         feed_per_tooth=result.case.cut.feed_per_tooth,
-        forces=result.force,
+        forces=result.force[rows],
         runout=slices.normal_offset[:, widest] if known else None,
         lowest_frequency=_lowest_frequency(result),
         speed_follows=result.setup.turned_by_port,
         negligible=_CARVED if isinstance(result.setup.groups[0], DiscreteCut) else _DELAYED,
     )
+
+
+def _before_the_last_stop(result: SimulationResult) -> slice:
+    """Rows up to where a program last cuts at its feed: as it stops, the force falls to nothing."""
+    course = result.setup.path
+    if not isinstance(course, ToolCourse):
+        return slice(None)
+    velocity = np.asarray(course.trajectory.at(result.time).velocity, dtype=np.float64)
+    speed = np.linalg.norm(velocity, axis=1)
+    speed[~np.isfinite(speed)] = 0.0
+    for begin, end in course.in_air:
+        speed[(result.time >= begin) & (result.time <= end)] = 0.0
+    if not speed.any():
+        return slice(None)
+    at_feed = np.flatnonzero(speed > _AT_FEED * np.median(speed[speed > 0.0]))
+    return slice(0, int(at_feed[-1]) + 1)
 
 
 def _lowest_frequency(result: SimulationResult) -> float:

@@ -56,6 +56,14 @@ def programmed(folder, machine, text=PROGRAM, **further):
     return case if stock is None else case.patch({"stock": {"box": stock}})
 
 
+def test_the_stop_at_the_end_of_a_stable_program_is_no_chatter(tmp_path):
+    case = programmed(tmp_path, two_axes(), "G1 X8 F1200\n")
+    # the same cut, which goes on and on
+    plain = cut_case(case.structure.model_dump(exclude_unset=True), revolutions=20)
+    assert simulate(plain).detection.verdict == "stable"
+    assert simulate(case).detection.verdict == "stable"
+
+
 def test_in_the_air_it_is_the_move(tmp_path):
     """Far from its stock the cut does nothing, and the axes do what the move alone does."""
     machine = two_axes(soft=True)
