@@ -21,6 +21,8 @@ from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
 
 _STEPS_A_CHUNK = 20_000
+#: of a record of all ports, at the most
+_MOST_BYTES = 1.5e9
 #: displacement, m or rad, that no axis travels in one configuration
 _FURTHEST = 1e5
 
@@ -61,6 +63,17 @@ class RunInputs:
     along: MachinesAlong | None = None  # structure along axes that it follows
 
 
+def _check_memory(rows: int, ports: int, duration: float) -> None:
+    """Refuse a record of three signals of every port that fits no memory."""
+    size = 3 * 8 * rows * ports
+    if size > _MOST_BYTES:
+        raise InputError(
+            f"the run of {duration:.4g} s records {rows} rows of {ports} places of the machine, "
+            f"{size / 1e9:.2g} GB; at most {_MOST_BYTES / 1e9:g} GB are allowed: shorten it, by "
+            "fewer averages or a shorter period of a test"
+        )
+
+
 def run_machine(
     machine: Machine, step: float, inputs: RunInputs, progress: Progress = no_progress
 ) -> MachineRun:
@@ -80,6 +93,7 @@ def run_machine(
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
     stride = inputs.stride
+    _check_memory(total // stride, len(tables.port), inputs.duration)
     record = port_record(total // stride, len(tables.port), stride, stride)
     laws = Laws(
         _with_injected(tables.explicit, machine, inputs.injected, total),

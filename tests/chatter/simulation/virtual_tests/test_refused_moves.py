@@ -32,6 +32,17 @@ def test_a_move_without_end():
     assert "1.51e+10 s, 3e+14 steps of 50 us (step); at most 1e+09" in told
 
 
+def test_a_test_with_more_averages_than_the_memory_holds():
+    """It ended in "unable to allocate 1.16 GiB"."""
+    machine = chatter.load_machine(EXAMPLES / "machine-coupled-milling" / "machine.toml")
+    long = machine.patch({"frf.boring_in_cut.averages": 200})
+    with pytest.raises(InputError) as caught:
+        chatter.frf(long, ["boring_in_cut"])
+    # three values of 8 bytes a place, at 12 million steps of 50 us: 0.288 GB a place
+    assert "frf.boring_in_cut: the run of 600.5 s records 12010000 rows of" in str(caught.value)
+    assert "at most 1.5 GB are allowed: shorten it, by fewer averages" in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("reached", "told"), [(19e-3, []), (1e-3, ["19 mm behind on a way of 20"])]
 )
