@@ -49,6 +49,19 @@ def test_a_mode_far_above_chatter_is_as_its_compliance():
     assert limit_of(CASE + FAR) == pytest.approx(limit_of(CASE), rel=1e-3)
 
 
+def test_a_mode_farther_than_any_table_is_as_its_compliance():
+    """A stiff slide on a free axis, 374 kHz beside 0.5 Hz, asked for a table of 174 GB."""
+    farther = FAR.replace("20 kHz", "900 kHz")
+    assert limit_of(CASE + farther) == pytest.approx(limit_of(CASE), rel=1e-3)
+    # a quarter of the compliance of the soft mode is felt alike, however fast it follows
+    near, far = (
+        FAR.replace("20 kHz", f).replace("1e9", "4e4").replace("0.03", "0.9")
+        for f in ("20 kHz", "900 kHz")
+    )
+    assert limit_of(CASE + far) == pytest.approx(limit_of(CASE + near), rel=3e-3)
+    assert limit_of(CASE + far) != pytest.approx(limit_of(CASE), rel=0.02)
+
+
 def test_its_table_does_not_hold_all_its_turns():
     """An element as long as a wavelength of the soft mode holds 2000 turns of the other."""
     cut = element_cut(milling_model(loads(CASE + FAR)), 1e-3)

@@ -44,6 +44,8 @@ class ElementCut(NamedTuple):
 #: angle, rad, that any mode turns through in an element at the most, as far as elements become no
 #: shorter than a share for it
 _MOST_TURNED, _SHORTEST_SHARE = 400.0, 1.0 / 16.0
+#: angle, rad, up to which the turning of a mode is tabulated; what is stiffer follows the force
+_MOST_TABULATED = 1600.0
 
 #: a cut at a resolution: Gauss points and wavelengths per element
 CutAt = Callable[[int, float], ElementCut]
@@ -68,11 +70,20 @@ def element_cut(
     # modes far above chatter: a table over all that they turn through would cost more than elements
     share = _MOST_TURNED / max(longest * float(np.max(arrays.natural_frequency)), _MOST_TURNED)
     longest *= max(share, _SHORTEST_SHARE)
+    arrays = _with_modes_below(arrays, _MOST_TABULATED / longest)
     of_element = element_points(points)
     response = response_table(arrays.natural_frequency, arrays.damping, of_element, longest)
     # no better than the elements are
     residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))
     return ElementCut(arrays, of_element, response, longest, residual)
+
+
+def _with_modes_below(arrays: CutArrays, highest: float) -> CutArrays:
+    """Cut in which modes above a frequency far above chatter, rad/s, act by their compliance."""
+    lowered = np.minimum(arrays.natural_frequency, highest)
+    # displacement per force at rest is that of the gain over the square of the frequency
+    share = (lowered / arrays.natural_frequency) ** 2
+    return arrays._replace(natural_frequency=lowered, force_gain=arrays.force_gain * share[:, None])
 
 
 def element_cuts(model: MillingModel, max_depth: float) -> CutAt:
