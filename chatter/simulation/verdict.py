@@ -26,8 +26,8 @@ _LEAST_CYCLES = 12.0
 _DELAYED, _CARVED = 0.005, 0.03
 #: share of the lowest resonance or loop corner below which motion is no chatter
 _WELL_BELOW = 0.25
-#: share of the usual speed of a program above which it is at its feed
-_AT_FEED = 0.95
+#: of the highest speed of a program, by which it falls from row to row where it stops
+_EVEN = 1e-9
 #: helix angles within this, rad, are the same
 _SAME_HELIX = 1e-12
 
@@ -107,7 +107,7 @@ def _cut_record(result: SimulationResult) -> CutRecord:
 
 
 def _before_the_last_stop(result: SimulationResult) -> slice:
-    """Rows up to where a program last cuts at its feed: as it stops, the force falls to nothing."""
+    """Rows up to where a program begins to stop for the last time: the force falls to nothing."""
     course = result.setup.path
     if not isinstance(course, ToolCourse):
         return slice(None)
@@ -116,10 +116,12 @@ def _before_the_last_stop(result: SimulationResult) -> slice:
     speed[~np.isfinite(speed)] = 0.0
     for begin, end in course.in_air:
         speed[(result.time >= begin) & (result.time <= end)] = 0.0
-    if not speed.any():
+    cutting = np.flatnonzero(speed > 0.0)
+    if not cutting.size:
         return slice(None)
-    at_feed = np.flatnonzero(speed > _AT_FEED * np.median(speed[speed > 0.0]))
-    return slice(0, int(at_feed[-1]) + 1)
+    does_not_fall = np.diff(speed[: cutting[-1] + 1]) >= -_EVEN * speed.max()
+    held = np.flatnonzero(does_not_fall)
+    return slice(0, int(held[-1]) + 2 if held.size else int(cutting[-1]) + 1)
 
 
 def _lowest_frequency(result: SimulationResult) -> float:

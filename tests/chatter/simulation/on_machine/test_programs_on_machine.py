@@ -6,6 +6,7 @@ import pytest
 from chatter import InputError
 from chatter.description.machine.machine_file import MachineFile
 from chatter.simulation.simulate import simulate
+from chatter.simulation.verdict import _before_the_last_stop
 from chatter.simulation.virtual_tests.from_file import move
 from tests.chatter.simulation.on_machine.coupled_machines import (
     body,
@@ -62,6 +63,16 @@ def test_the_stop_at_the_end_of_a_stable_program_is_no_chatter(tmp_path):
     plain = cut_case(case.structure.model_dump(exclude_unset=True), revolutions=20)
     assert simulate(plain).detection.verdict == "stable"
     assert simulate(case).detection.verdict == "stable"
+
+
+def test_a_slow_block_at_the_end_is_judged_too(tmp_path):
+    """4 mm at 20 mm/s, then 2 mm at 5 mm/s: the last quarter second is cut at the lower feed."""
+    result = simulate(programmed(tmp_path, two_axes(), "G1 X4 F1200\nG1 X6 F300\n"))
+    rows = _before_the_last_stop(result)
+    judged = result.time[rows][-1]
+    assert judged > 0.2 + 0.3
+    # 5 m/s2 and 400 m/s3: 5 mm/s are gone within 2 (0.005 / 400)^0.5 s
+    assert result.time[-1] - judged < 0.1
 
 
 def test_in_the_air_it_is_the_move(tmp_path):
