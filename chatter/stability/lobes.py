@@ -1,5 +1,7 @@
 """Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
 
+import math
+
 import numpy as np
 
 from chatter.description.arrays import Array
@@ -84,6 +86,7 @@ def lobes(
         notes=(
             *model.notes, *notes_of(found.neglected),
             *notes_on_dashpot(model, chosen), *notes_on_tolerance(model, limits),
+            *notes_on_spacing(case, speeds, lowest),
             *(question_of_flutes(case, deepest_pocket) or question_of_search(case, max_depth)),
         ),
         zero_order=zero_order,
@@ -118,6 +121,24 @@ def notes_on_tolerance(model: MillingModel, limits: LimitCurve) -> tuple[str, ..
     return (
         f"the critical depths are accurate to {limits.error:.1%}, not to the {model.tolerance:.2%} "
         "asked for; a lower lobes.tolerance takes finer elements, and longer",
+    )
+
+
+def notes_on_spacing(case: Case, speeds: Array, lowest: LowestLimit) -> tuple[str, ...]:
+    """Say where speeds (n,), rad/s, are farther apart than the lobes about the lowest limit."""
+    speed = lowest.spindle_speed
+    if len(speeds) < 2 or not math.isfinite(lowest.chatter_frequency):
+        return ()
+    waves = 2.0 * math.pi * lowest.chatter_frequency / (case.tool.teeth * speed)
+    width = speed / (waves + 1.0)
+    behind = int(np.clip(np.searchsorted(speeds, speed), 1, len(speeds) - 1))
+    spacing = float(speeds[behind] - speeds[behind - 1])
+    if spacing <= width:
+        return ()
+    return (
+        f"the speeds are {rpm(spacing):.0f} rpm apart, lobes about {rpm(speed):.0f} rpm "
+        f"{rpm(width):.0f} rpm wide: between the speeds limits may be lower than the lowest found; "
+        "lobes.speeds takes more of them",
     )
 
 
