@@ -14,7 +14,7 @@ from pydantic import BaseModel
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
-from chatter.description.path import Step, field_at, join_path, parse_path
+from chatter.description.path import Step, field_at, join_path, leaves, parse_path
 
 
 class _Units(NamedTuple):
@@ -82,22 +82,13 @@ def _nested(steps: tuple[Step, ...], value: Any) -> Any:
     return value
 
 
-def _numbers(item: Any, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, ...], float]]:
-    if isinstance(item, Mapping):
-        for key, value in item.items():
-            yield from _numbers(value, (*steps, key))
-    elif isinstance(item, list):
-        for index, value in enumerate(item):
-            yield from _numbers(value, (*steps, index))
-    elif isinstance(item, (int, float)) and not isinstance(item, bool):
-        yield steps, item
-
-
 def _bare_numbers(
     kind: type[BaseModel], data: Any
 ) -> Iterator[tuple[tuple[Step, ...], float, _Units]]:
     """Path, value and possible units of each bare value that is hardly in SI, but zero."""
-    for steps, value in _numbers(data, ()):
+    for steps, value in leaves(data):
+        if not isinstance(value, (int, float)) or isinstance(value, bool):
+            continue
         units = _OF_SPINDLE if _is_spindle_speed(kind, steps) else _OF_KEYS.get(steps)
         if value != 0 and units is not None and value < units.below:
             yield steps, value, units

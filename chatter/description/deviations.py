@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
 
-from chatter.description.path import Step, field_at, join_path
+from chatter.description.path import field_at, join_path, leaves
 from chatter.description.quantities import QuantityField
 from chatter.description.units import QuantityError, parse
 
@@ -15,22 +14,11 @@ from chatter.description.units import QuantityError, parse
 def deviations_of(kind: type[BaseModel], data: Any) -> dict[str, float]:
     """Return the standard deviations, SI, of the values of nested tables, by path."""
     found: dict[str, float] = {}
-    for steps, text in _texts(data, ()):
-        field = field_at(kind, steps)
+    for steps, text in leaves(data):
+        field = field_at(kind, steps) if isinstance(text, str) else None
         if field is not None and (deviation := _deviation(text, field)) > 0.0:
             found[join_path(steps)] = deviation
     return found
-
-
-def _texts(item: Any, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, ...], str]]:
-    if isinstance(item, dict):
-        for key, value in item.items():
-            yield from _texts(value, (*steps, key))
-    elif isinstance(item, list):
-        for index, value in enumerate(item):
-            yield from _texts(value, (*steps, index))
-    elif isinstance(item, str):
-        yield steps, item
 
 
 def _deviation(item: str, field: QuantityField) -> float:

@@ -1,6 +1,7 @@
 """Dotted paths into a case: "cut.axial_depth", "structure.mode[0].damping", "structure.mode[*]"."""
 
 import re
+from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
@@ -54,6 +55,18 @@ def join_path(steps: tuple[Step, ...]) -> str:
         position = isinstance(step, int) or step == "*"
         text += f"[{step}]" if position else f".{step}" if text else step
     return text
+
+
+def leaves(item: Any, steps: tuple[Step, ...] = ()) -> Iterator[tuple[tuple[Step, ...], Any]]:
+    """Path and value of everything in nested tables and lists that is neither."""
+    if isinstance(item, Mapping):
+        for key, value in item.items():
+            yield from leaves(value, (*steps, key))
+    elif isinstance(item, (list, tuple)):
+        for index, value in enumerate(item):
+            yield from leaves(value, (*steps, index))
+    else:
+        yield steps, item
 
 
 @cache

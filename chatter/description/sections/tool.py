@@ -168,7 +168,8 @@ class Tool(Section):
     def _check_kind(self) -> Tool:
         problems = []
         if self.cutting_edge_angle < 0.5 * math.pi and self.kind != "inserted":
-            problems.append(("cutting_edge_angle", f'does not belong to kind = "{self.kind}"'))
+            text = f'belongs to kind = "inserted", not to "{self.kind}"'
+            problems.append(("cutting_edge_angle", text))
         if self.cutting_edge_angle < 0.5 * math.pi and self.taper_angle:
             problems.append(("taper_angle", "is another name for 90 deg - cutting_edge_angle"))
         is_ball = abs(self.corner_radius - 0.5 * self.diameter) <= 1e-9 * self.diameter

@@ -171,6 +171,7 @@ def test_two_values_that_are_right_only_together(case):
         ({"model_config.frozen": 1.0}, ["model_config", "unknown key"]),
         ({3: 1.0}, ["not a path"]),
         ({"title": 3}, ["title"]),
+        ({"tool.cutting_edge_angle": "45 deg"}, ["cutting_edge_angle", 'kind = "inserted"']),
     ],
 )
 def test_refusals(case, values, words):
