@@ -110,7 +110,9 @@ class LiveCase:
         neglected = self._neglected  # in a coarse diagram that of the last fine one
         at_cut = self._limits_of_cut(drawn, curve, progress)
         crossings, curve = at_cut.crossings[0], with_limits_between(curve, at_cut)
-        stable = int((crossings < cut.axial_depth).sum()) % 2 == 0
+        depth = cut.axial_depth
+        stable = int((crossings < depth).sum()) % 2 == 0
+        certain = not deciding(neglected, depth, crossings, deepest, stable=stable)
         return {
             "stage": drawn.stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
@@ -121,9 +123,9 @@ class LiveCase:
             "pockets": [_pocket(one) for one in pockets],
             "operating": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),
-                "axial_depth_mm": cut.axial_depth * 1e3,
+                "axial_depth_mm": depth * 1e3,
                 "stable": stable,
-                "certain": not deciding(neglected, cut.axial_depth, crossings, stable=stable),
+                "certain": certain,
             },
             "notes": [*drawn.model.notes, *notes_of(neglected)],
         }

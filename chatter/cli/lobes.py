@@ -201,6 +201,9 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
             f"{lowest['spindle_speed_rpm']:.0f} rpm, "
             f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz{_taken_off(diagram)})"
         )
+    elif lowest["stable_below_mm"] is not None:
+        below = _stable_below(lowest["stable_below_mm"], diagram)
+        print_line(f"{below} ({_without_limit(diagram)}{_taken_off(diagram)})")
     else:
         print_line(_without_limit(diagram))
     limit = operating["critical_depth_mm"]

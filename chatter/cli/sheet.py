@@ -46,6 +46,9 @@ def _print_sheet(found: Sheet) -> None:
         headers, rows = headers_in(units), rows_of(one, units)
         texts = [["" if row[i] is None else f"{row[i]}" for i in _COLUMNS] for row in rows]
         print_table(rows[0][0], [headers[i] for i in _COLUMNS], texts)
+        for cut in one.cuts:
+            if cut.because:
+                print_line(f"{one.case.name}: {cut.name} not certain: {cut.because}")
         if one.variation is not None:
             print_line(
                 f"{one.case.name}: spindle-speed variation of {one.variation.amplitude:.0%} at "

@@ -25,6 +25,7 @@ class SheetCut(NamedTuple):
     limit: float | None  # mm; None where none was found up to the searched depth
     removal_rate: float | None  # cm^3/min
     verdict: str  # "stable", "chatter" or "not certain"
+    because: str = ""  # why it is not certain
 
     @property
     def margin(self) -> float | None:
@@ -61,6 +62,7 @@ def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:
         cut.axial_depth,
         float(diagram.operating.critical_depth[0]),
         _verdict(diagram),
+        diagram.why_not_certain,
     )
     pockets = [
         _at_speed(
@@ -84,7 +86,7 @@ def _verdict(diagram: StabilityDiagram) -> str:
 
 
 def _at_speed(
-    case: Case, name: str, speed: float, depth: float, limit: float, verdict: str
+    case: Case, name: str, speed: float, depth: float, limit: float, verdict: str, because: str = ""
 ) -> SheetCut:
     turns = speed / (2.0 * math.pi)
     feed = case.cut.feed_per_tooth * case.tool.teeth * turns
@@ -99,6 +101,7 @@ def _at_speed(
         1e3 * limit if math.isfinite(limit) else None,
         60e6 * depth * case.width_of_cut * feed,
         verdict,
+        because,
     )
 
 

@@ -129,6 +129,7 @@ def _summary(one: CaseCuts) -> dict[str, Any]:
             {
                 "name": cut.name,
                 "verdict": cut.verdict,
+                "not_certain_because": cut.because or None,
                 "stable": cut.verdict == STABLE,
                 "spindle_speed_rpm": cut.spindle_speed,
                 "cutting_speed_m_per_min": cut.cutting_speed,

@@ -35,10 +35,10 @@ def workbook_of(cases: Sequence[CaseCuts]) -> bytes:
     table = book.active
     table.title = "cuts"
     units = units_of_all(cases)
-    _append(table, headers_in(units))
+    _append(table, (*headers_in(units), "not certain because"))
     for one in cases:
-        for row in rows_of(one, units):
-            _append(table, row)
+        for row, cut in zip(rows_of(one, units), one.cuts, strict=True):
+            _append(table, (*row, cut.because or None))
     for place, one in enumerate(cases, start=1):
         _append_limits(book.create_sheet(f"limits {place}"), one, units.length)
     for worksheet in book.worksheets:

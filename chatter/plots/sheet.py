@@ -125,6 +125,9 @@ def _remarks(one: CaseCuts) -> str:
     if one.diagram.why_no_pocket:
         kept = f"No other depth is stated: {one.diagram.why_no_pocket}."
     lines = [f"An empty limit: none was found up to the depth that was searched. {kept}"]
+    lines += [
+        f"The cut {cut.name} is not certain: {cut.because}." for cut in one.cuts if cut.because
+    ]
     variation = one.variation
     if variation is not None:
         length = units_of(one.case).length

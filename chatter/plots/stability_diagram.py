@@ -275,7 +275,7 @@ def _searched(diagram: StabilityDiagram, left: IntegerArray, share: Array) -> Ar
 def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
     """Hatch, about each limit, how far edge forces that are left out may lower or raise it.
 
-    As `deciding` judges a point: where a speed has no limit, nothing bounded is left out.
+    As `deciding` judges a point: of a limit that was not found it is known where the search ended.
     """
     effects = diagram.neglected_at_all_speeds
     low, high = lowest_factor(effects), highest_factor(effects)
@@ -291,7 +291,7 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
         between = [
             _between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)
         ]
-        bands = _not_certain(between, low, high)
+        bands = _not_certain(between, _searched(diagram, left, share), low, high)
     factor = diagram.units.length.factor
     for number, (first, last) in enumerate(bands):
         axes.fill_between(
@@ -302,12 +302,18 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
         )  # fmt: skip
 
 
-def _not_certain(crossings: Sequence[Array], low: float, high: float) -> list[tuple[Array, Array]]:
+def _not_certain(
+    crossings: Sequence[Array], searched: Array, low: float, high: float
+) -> list[tuple[Array, Array]]:
     """Bands (lower and upper ends, m, nan where there is none) about limits that may be elsewhere.
 
     A limit at which stability is lost lies between the factors `low` and `high` of itself; the
-    limits next to it bound the band.
+    limits next to it bound the band. One that was not found lies beyond the depth searched, m.
     """
+    crossings = [
+        found if len(found) % 2 else [*found, end]
+        for found, end in zip(crossings, searched, strict=True)
+    ]
     bands = []
     for index in range(0, max((len(found) for found in crossings), default=0), 2):
         ends = np.full((len(crossings), 2), math.nan)

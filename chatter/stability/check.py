@@ -138,7 +138,7 @@ class StabilityCheck(NotebookResult):
     def deciding(self) -> tuple[NeglectedEffect, ...]:
         """What the linear analysis leaves out and could turn its verdict; empty where it stands."""
         depth, crossings = self.case.cut.axial_depth, self.limit.crossings[0]
-        return deciding(self.neglected, depth, crossings, stable=self.stable)
+        return deciding(self.neglected, depth, crossings, self.max_depth, stable=self.stable)
 
     @property
     def verdict(self) -> str:
@@ -149,9 +149,14 @@ class StabilityCheck(NotebookResult):
 
     @property
     def lowest_depth(self) -> float:
-        """Least depth, m, at which the limit may lie by what the linear analysis leaves out."""
+        """Least depth, m, at which the limit may lie by what the linear analysis leaves out.
+
+        Of a limit that was not found no more is known than that it lies beyond the search.
+        """
         factor = lowest_factor(self.neglected)
-        return self.critical_depth * factor if factor > 0.0 else 0.0
+        if factor == 1.0:
+            return self.critical_depth
+        return factor * min(self.critical_depth, self.max_depth)
 
     @property
     def bifurcation(self) -> str:
@@ -238,8 +243,11 @@ class StabilityCheck(NotebookResult):
                 return ""
             return f", from {factor * below[-1]:.4g} to {factor * high:.3g} {unit}"
         low, limit = self.lowest_depth, self.critical_depth
-        if not (np.isfinite(limit) and 0.0 < low < depth):
+        if not 0.0 < low < depth:
             return ""
+        if not np.isfinite(limit):
+            searched = f"{factor * self.max_depth:.4g} {unit}"
+            return f", to {factor * low:.3g} {unit} of a limit that lies above {searched}"
         return f", from {factor * limit:.4g} to {factor * low:.3g} {unit}"
 
     def rows(self) -> list[list[str]]:
@@ -318,7 +326,7 @@ class StabilityCheck(NotebookResult):
     def _lowest(self) -> list[list[str]]:
         """What the limit is at least, where that is another."""
         low, limit = self.lowest_depth, self.critical_depth
-        if not np.isfinite(limit) or not low < limit:
+        if not low < limit:
             return []
         names = ", ".join(one.name for one in self.neglected if one.lowest < 1.0)
         known = self.units.length.text(low, ".3g") if low > 0.0 else "not known"

@@ -28,8 +28,10 @@ from chatter.stability.neglected_effects import (
     NeglectedEffect,
     deciding,
     lowest_factor,
+    reasons_of,
 )
 from chatter.stability.pockets import SPEED_MARGIN, Pocket, depth_margin
+from chatter.stability.search_range import beyond_the_cut
 
 #: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
@@ -253,13 +255,30 @@ class StabilityDiagram(SavedResult):
     def lowest_depth(self) -> float:
         """Depth, m, below which any speed is stable: what edge forces and friction leave of it."""
         factor = self.resting_friction * lowest_factor(self.neglected_at_all_speeds)
+        if factor < 1.0 and not math.isfinite(self.lowest.critical_depth):
+            # of a limit that was not found no more is known than that it lies beyond the search
+            return float(self.max_depth[0]) * factor
         return self.lowest.critical_depth * factor
 
     @property
     def deciding(self) -> tuple[NeglectedEffect, ...]:
         """What is left out and could turn the linear verdict on the operating point."""
         depth, crossings = self.case.cut.axial_depth, self.operating.crossings[0]
-        return deciding(self.neglected, depth, crossings, stable=self.operating_is_stable)
+        stable = self.operating_is_stable
+        return deciding(self.neglected, depth, crossings, self._searched, stable=stable)
+
+    @property
+    def why_not_certain(self) -> str:
+        """What could turn the linear verdict on the operating point; empty where it stands."""
+        reasons = reasons_of(self.deciding, stable=self.operating_is_stable)
+        if self.deciding and not math.isfinite(self.operating.critical_depth[0]):
+            reasons.append(f"no limit was found up to {self.units.length.text(self._searched)}")
+        return "; ".join(reasons)
+
+    @property
+    def _searched(self) -> float:
+        """Depth, m, to which limits at the operating speed were searched."""
+        return beyond_the_cut(self.case, float(self.max_depth[0]))
 
     @property
     def is_over_speed(self) -> bool:

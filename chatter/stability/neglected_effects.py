@@ -60,7 +60,12 @@ def reasons_of(effects: Sequence[NeglectedEffect], *, stable: bool) -> list[str]
 
 
 def deciding(
-    effects: Sequence[NeglectedEffect], depth: float, crossings: Array, *, stable: bool
+    effects: Sequence[NeglectedEffect],
+    depth: float,
+    crossings: Array,
+    searched: float,
+    *,
+    stable: bool,
 ) -> tuple[NeglectedEffect, ...]:
     """Effects that could turn the linear verdict on a cut; none where it stands.
 
@@ -71,16 +76,15 @@ def deciding(
         Axial depth of the cut, m.
     crossings : (n,) array of float
         Linear limits at its speed, m, rising.
+    searched : float
+        Depth, m, to which limits were searched: of one beyond it no more is known.
     stable : bool
         The linear verdict.
     """
     if stable:
         above = [limit for limit in crossings if limit > depth]
-        limit = above[0] if above else math.inf
-        # without a limit only what is unknown can make one
-        low = limit * lowest_factor(effects) if math.isfinite(limit) else math.inf
-        unknown = any(effect.lowest == 0.0 for effect in effects)
-        if depth < low and not unknown:
+        limit = above[0] if above else max(searched, depth)
+        if depth < limit * lowest_factor(effects):
             return ()
         return tuple(effect for effect in effects if effect.lowest < 1.0)
     below = [limit for limit in crossings if limit <= depth]

@@ -49,6 +49,7 @@ def effect(lowest, highest, share=0.2):
     return NeglectedEffect("made up", share, lowest, highest, "because", "note")
 
 
+SEARCHED = 10.0
 LOWER, UNKNOWN, EITHER = effect(0.8, 1.0), effect(0.0, math.inf), effect(0.9, 1.3)
 
 
@@ -72,12 +73,18 @@ LOWER, UNKNOWN, EITHER = effect(0.8, 1.0), effect(0.0, math.inf), effect(0.9, 1.
         ((LOWER,), 2.3, (1.0, 2.0, 3.0), True, 0),
         ((LOWER,), 2.5, (1.0, 2.0, 3.0), True, 1),
         ((), 0.5, (1.0,), True, 0),
+        # no limit as far as 10: the true one may lie from 8 on
+        ((LOWER,), 7.9, (), True, 0),
+        ((LOWER,), 8.1, (), True, 1),
+        ((LOWER, EITHER), 7.3, (), True, 2),
+        ((), 9.9, (), True, 0),
     ],
 )
 def test_a_verdict_stands_where_no_bound_reaches_the_cut(
     effects, depth, crossings, stable, decides
 ):
-    assert len(deciding(effects, depth, np.array(crossings), stable=stable)) == decides
+    found = deciding(effects, depth, np.array(crossings), SEARCHED, stable=stable)
+    assert len(found) == decides
 
 
 def test_check_says_that_a_cut_just_below_the_limit_is_not_certain(case_file):
@@ -103,6 +110,32 @@ def test_check_says_that_a_cut_just_below_the_limit_is_not_certain(case_file):
     assert unsure.summary()["neglected_effects"][0]["limit_at_least"] == edge.lowest
     (sure,) = at[0.8 * edge.lowest].sentences()
     assert sure.startswith("stable: ")
+
+
+def test_without_a_limit_edge_forces_leave_a_share_of_the_depths_searched(case_file):
+    """A stated depth of 12 mm was "stable" while the pockets beside it were 2 mm deep."""
+    stiff = {f"structure.mode[{name}].stiffness": "1000 N/um" for name in ("0", "1")}
+    thin = {"cut.feed_per_tooth": "0.022 mm", "lobes.depths": {"to": "25 mm"}, **stiff}
+    case = chatter.load(case_file).patch(thin)
+    (edge,) = chatter.check(case).neglected
+    bound = (1.0 - edge.share) * 25.0  # mm, of which the true limit is certain
+    assert 0.3 < edge.share < 0.95
+    above, below = (
+        chatter.check(case.patch({"cut.axial_depth": f"{depth} mm"}))
+        for depth in (1.05 * bound, 0.95 * bound)
+    )
+    assert [above.verdict, below.verdict] == ["not certain", "stable"]
+    assert above.lowest_depth == pytest.approx(bound * 1e-3)
+    assert f"to {bound:.3g} mm of a limit that lies above 25 mm" in above.sentences()[1]
+    sheet = chatter.sheet(above.case)
+    stated, *pockets = sheet.cases[0].cuts
+    assert stated.verdict == "not certain"
+    assert "no limit was found up to 25 mm" in stated.because
+    assert pockets
+    assert all(pocket.axial_depth <= bound * (1.0 + 1e-9) for pocket in pockets)
+    assert sheet.cases[0].diagram.lowest_depth == pytest.approx(bound * 1e-3)
+    row = sheet.summary()["cases"][0]["cuts"][0]
+    assert row["not_certain_because"] == stated.because
 
 
 @pytest.mark.parametrize(("depth", "code"), [("1 mm", 0), ("3.2 mm", 4), ("4 mm", 3)])
