@@ -311,7 +311,7 @@ def _not_certain(
     limits next to it bound the band. One that was not found lies beyond the depth searched, m.
     """
     crossings = [
-        found if len(found) % 2 else [*found, end]
+        found if len(found) % 2 else np.append(found, end)
         for found, end in zip(crossings, searched, strict=True)
     ]
     bands = []
