@@ -15,6 +15,7 @@ from chatter.description.given_path import paths_given
 from chatter.description.given_values import number_given
 from chatter.drive_friction.drive_records import DriveRecords, DriveSettings, drive_records
 from chatter.drive_friction.friction_laws import LAWS, FitSettings, FittedFriction
+from chatter.drive_friction.limited_effort import flat_tops, lower_low_passes, remedy
 from chatter.drive_friction.result import DriveFriction, TriedFriction
 from dynamics.frf.container import MeasurementError
 from dynamics.friction.identification.filtering import LowPass
@@ -87,8 +88,24 @@ def friction(
         given = files
     else:
         given = drive_records(paths_given(files, "a record of a drive"), drive)
+    settings = _settings(given.records, inertia, low_pass)
+    found = _identified(given, settings, law, name)
+    try:
+        tops = flat_tops(given.records, settings.low_pass)
+    except MeasurementError:
+        return found
+    others = lower_low_passes(given.records, settings) if low_pass is None else []
+    better = remedy(given.records, found.kept, settings, tops, others)
+    if better is None:
+        return replace(found, flat_tops=tops)
+    explained = _identified(replace(given, records=better.records), better.settings, law, name)
+    return replace(explained, flat_tops=tops, instead_of=found)
+
+
+def _identified(
+    given: DriveRecords, settings: FitSettings, law: str | None, name: str
+) -> DriveFriction:
     records = given.records
-    settings = _settings(records, inertia, low_pass)
     tried = []
     for one in LAWS if law is None else (law,):
         try:
@@ -164,6 +181,7 @@ def _error(fit: FittedFriction, record: DriveRecord, settings: FitSettings) -> t
     low_pass = settings.low_pass
     effort = low_pass.apply(record.effort, record.sample_time)
     moving = np.abs(record.velocity) >= settings.minimum_speed
+    moving &= ~record.near_excluded(low_pass.settling)
     return (fit.effort(record, low_pass) - effort)[moving], effort[moving]
 
 

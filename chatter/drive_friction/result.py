@@ -13,6 +13,7 @@ import tomlkit
 from chatter.description.formatting import to_digits
 from chatter.drive_friction.drive_records import DriveRecords
 from chatter.drive_friction.friction_laws import FitSettings, FittedFriction
+from chatter.drive_friction.limited_effort import UNEXPLAINED, FlatTops, unexplained
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
 
@@ -63,6 +64,9 @@ class DriveFriction(NotebookResult):
     kept: FittedFriction
     other_cutoffs: Mapping[float, FittedFriction]  # Hz -> the same law with that low-pass
     name: str  # of the axis
+    flat_tops: FlatTops | None = None  # of the effort, as at the limit of a drive
+    #: what the records say with the first low-pass and all samples, where that explains less
+    instead_of: DriveFriction | None = None
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -79,9 +83,15 @@ class DriveFriction(NotebookResult):
         left, whole = [], []
         for record in self.given.records:
             effort = low_pass.apply(record.effort, record.sample_time)
-            left.append(self.kept.effort(record, low_pass) - effort)
-            whole.append(effort)
+            judged = ~record.near_excluded(low_pass.settling)
+            left.append((self.kept.effort(record, low_pass) - effort)[judged])
+            whole.append(effort[judged])
         return float(np.sqrt(np.mean(np.concatenate(left) ** 2)) / np.std(np.concatenate(whole)))
+
+    @property
+    def unexplained(self) -> float:
+        """Rms of what the kept law leaves of the effort of moving samples, over that of it."""
+        return unexplained(self.kept, self.given.records, self.settings)
 
     def summary(self) -> dict[str, Any]:
         """Content of friction.json."""
@@ -103,6 +113,8 @@ class DriveFriction(NotebookResult):
             "inertia_given": self.settings.inertia,
             "inertia_declared": self.given.declared_inertia,
             "residual": self.residual,
+            "unexplained": self.unexplained,
+            "effort_flat_at": None if self.flat_tops is None else self.flat_tops.level,
             "low_pass_Hz": self.settings.low_pass.cutoff,
             "minimum_speed": self.settings.minimum_speed,
             "laws": [
@@ -122,7 +134,7 @@ class DriveFriction(NotebookResult):
     @property
     def notes(self) -> list[str]:
         """What the reader should know."""
-        notes = []
+        notes = [*self._not_to_be_used(), *self._explained_otherwise()]
         if self.kept.undecided:
             notes.append(
                 f"the records do not decide {', '.join(self.kept.undecided)}: the interval spans "
@@ -145,6 +157,38 @@ class DriveFriction(NotebookResult):
                 "the moves go one way only: an offset, such as weight, counts as Coulomb friction"
             )
         return notes
+
+    def _not_to_be_used(self) -> list[str]:
+        share = self.unexplained
+        if share <= UNEXPLAINED:
+            return []
+        told = f"{share:.0%} of the effort is unexplained: these values are not to be used"
+        if self.flat_tops is not None:
+            told += f"; {self._flat()}, as at the limit of the drive"
+            told += ": record slower moves or give a lower --low-pass"
+        return [told]
+
+    def _explained_otherwise(self) -> list[str]:
+        if self.instead_of is None:
+            return []
+        before, after = self.instead_of, f"{self.unexplained:.0%} of the effort is unexplained"
+        if any(one.excluded is not None for one in self.given.records):
+            return [
+                f"{self._flat()} where the law of the other samples asks for more: left out, as "
+                f"cut by a limit; {after}, with them {before.unexplained:.0%}"
+            ]
+        low, high = (one.settings.low_pass.cutoff for one in (self, before))
+        told = self.flat_tops is None or bool(self._not_to_be_used())
+        flat = "" if told else f"{self._flat()}, as at the limit of the drive; "
+        return [
+            f"{flat}the axis vibrates beyond what the effort tells: below {low:g} Hz {after}, "
+            f"below {high:g} Hz {before.unexplained:.0%}"
+        ]
+
+    def _flat(self) -> str:
+        unit = self.unit("coulomb").replace("*", " ")
+        tops = self.flat_tops
+        return f"the effort is flat at {tops.level:.4g} {unit} in {tops.share:.0%} of the samples"
 
     def _wrong_signs(self) -> list[str]:
         found = self.kept.estimates
@@ -182,6 +226,8 @@ class DriveFriction(NotebookResult):
         document = tomlkit.document()
         names = ", ".join(record.name for record in self.given.records)
         document.add(tomlkit.comment(f"friction identified from {names}"))
+        for note in self._not_to_be_used():
+            document.add(tomlkit.comment(note))
         document.add("friction", parent)
         return tomlkit.dumps(document)
 

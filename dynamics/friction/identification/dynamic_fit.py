@@ -163,6 +163,7 @@ def _prepare(
     smooth = low_pass.apply(both, record.sample_time)
     kept = np.abs(record.velocity) >= minimum_speed
     kept &= record.time - record.time[0] >= settling
+    kept &= ~record.near_excluded(low_pass.settling)
     return smooth[:, 0], smooth[:, 1], kept
 
 

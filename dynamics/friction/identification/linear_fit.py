@@ -96,7 +96,8 @@ def fit_linear(
     columns, efforts, noise, moving = [], [], [], []
     for record in records:
         made = _filtered(record, (*terms, *fixed), low_pass)
-        kept = ~_near_rest(record, minimum_speed, low_pass)
+        slow = np.abs(record.velocity) < minimum_speed
+        kept = ~record.near(slow, low_pass.settling) & ~record.near_excluded(low_pass.settling)
         columns.append(made[kept, 1:])
         efforts.append(made[kept, 0])
         noise.append(_acceleration_noise(record, low_pass))
@@ -151,14 +152,6 @@ def _filtered(record: DriveRecord, terms: Sequence[str], low_pass: LowPass) -> N
     made = [record.effort]
     made += [_COLUMNS[name](record.velocity, acceleration) for name in terms]
     return low_pass.apply(np.column_stack(made), record.sample_time)
-
-
-def _near_rest(record: DriveRecord, minimum_speed: float, low_pass: LowPass) -> NDArray[np.bool_]:
-    """Samples (n,) slower than the limit, or within the filter's reach of one."""
-    slow = np.abs(record.velocity) < minimum_speed
-    reach = int(np.ceil(low_pass.settling / record.sample_time))
-    count = np.convolve(slow, np.ones(2 * reach + 1), mode="full")[reach : reach + len(slow)]
-    return count > 0.5
 
 
 def _acceleration_noise(record: DriveRecord, low_pass: LowPass) -> float:

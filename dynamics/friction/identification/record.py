@@ -37,6 +37,8 @@ class DriveRecord:
     #: (n,), m/s^2 or rad/s^2, where it was measured; otherwise it is derived from the velocity
     acceleration: NDArray[np.float64] | None = None
     name: str = "drive record"  # of the record, for messages
+    #: (n,), samples whose effort is not what moved the axis: no law is judged by them
+    excluded: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         for signal in ("time", "position", "velocity", "effort", "acceleration"):
@@ -113,7 +115,20 @@ class DriveRecord:
             self.effort[kept],
             acceleration,
             f"{self.name} from {start:g} to {end:g} s",
+            None if self.excluded is None else self.excluded[kept],
         )
+
+    def near_excluded(self, reach: float) -> NDArray[np.bool_]:
+        """Samples (n,) within a time, s, of one that is left out."""
+        if self.excluded is None:
+            return np.zeros(len(self.time), dtype=np.bool_)
+        return self.near(self.excluded, reach)
+
+    def near(self, marked: NDArray[np.bool_], reach: float) -> NDArray[np.bool_]:
+        """Samples (n,) within a time, s, of one that is marked (n,)."""
+        samples = int(np.ceil(reach / self.sample_time))
+        count = np.convolve(marked, np.ones(2 * samples + 1), mode="full")
+        return count[samples : samples + len(marked)] > 0.5
 
 
 def record_from_current(
