@@ -10,6 +10,9 @@ from chatter.cli.progress import progress_bar
 from chatter.description.formatting import to_digits
 from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
 
+#: where the work of drives goes -> in words
+_ENERGIES = {"friction": "friction", "dissipated": "dampers", "stored": "stored at the end"}
+
 
 def move(
     machine: options.MachinePath,
@@ -36,7 +39,7 @@ def move(
         written += result.save(folder / name if len(sections) > 1 else folder)
         summaries[name] = result.summary()
         behind += [*file.questions_of_positions(section.position)]
-        behind += [f"{name}: {text}" for text in result.left_behind()]
+        behind += [f"{name}: {text}" for text in summaries[name]["notes"]]
         interrupted = interrupted or result.interrupted
         if interrupted:
             break
@@ -66,3 +69,8 @@ def _print_errors(summaries: dict) -> None:
         print_table(f"{name}: largest set less actual", titles, rows)
         if summary["contour_error_um"] is not None:
             print_line(f"largest contour error {summary['contour_error_um']:.4g} um")
+        energy = summary["energy_J"]
+        taken = ", ".join(
+            f"{words} {energy[key]:.4g} J" for key, words in _ENERGIES.items() if key in energy
+        )
+        print_line(f"work of the drives {energy.get('drives', 0.0):.4g} J: {taken}")

@@ -9,6 +9,7 @@ law that is absent from a case costs nothing.
 from chatter.engine.cut import CutOnPorts, cut_commit, cut_forces
 from chatter.engine.record import CutRecord, PortRecord, cut_record_commit, port_record_commit
 from cutting.compiled import by_table, for_each
+from dynamics.machine.energy import EnergyAccount, energy_commit
 from dynamics.machine.groups import (
     ConstantForces,
     ControlledDrives,
@@ -22,12 +23,7 @@ from dynamics.machine.groups import (
     nothing,
 )
 from dynamics.machine.modal_structure import ModalEnergy, modal_energy_forces
-from dynamics.machine.moving_structure import (
-    EnergyAccount,
-    MovingStructure,
-    energy_commit,
-    moving_forces,
-)
+from dynamics.machine.moving_structure import MovingStructure, moving_forces
 from dynamics.machine.travel_limit import TravelLimit, travel_limit_commit
 
 #: table -> kernels of its forces and its commit

@@ -122,7 +122,8 @@ def _energy(cut: CutRun) -> dict[str, float]:
     Of a machine whose structure follows its axes: work of all forces, and of the travel as well.
     """
     if cut.setup.on_machine is not None:
-        return energy_of_structure(cut.setup.structure.tables)
+        energy = energy_of_structure(cut.setup.structure.tables)
+        return {"cut" if name == "loads" else name: value for name, value in energy.items()}
     account, *frictions = cut.setup.structure.tables.implicit
     work, dissipated = account.energy
     rubbed = sum(group.work[0] for group in frictions if isinstance(group, FrictionsOnPorts))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from dynamics.compiled import INLINED
 from dynamics.machine.description import Machine
-from dynamics.machine.steps import StructureSteps, multiply, multiply_lower
+from dynamics.machine.steps import StructureSteps, lower_triangle, multiply
 from dynamics.matrix_exponential import exact_step
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import StructureError
@@ -69,28 +69,13 @@ class MovingStructure(NamedTuple):
     displacement: NDArray[np.float64]  # (t, s, p)
     velocity: NDArray[np.float64]  # (t, s, p)
     stiffness: NDArray[np.float64]  # of unit masses, 1/s^2, (t, n, n)
-    damping: NDArray[np.float64]  # 1/s, as `_lower`, (t, n, n)
+    damping: NDArray[np.float64]  # 1/s, as `lower_triangle`, (t, n, n)
     stiffness_now: NDArray[np.float64]  # (n, n)
-    damping_now: NDArray[np.float64]  # as `_lower`, (n, n)
+    damping_now: NDArray[np.float64]  # as `lower_triangle`, (n, n)
     unit: NDArray[np.float64]  # coordinate per displacement of a freedom, 1/s, (n,)
     strain: NDArray[np.float64]  # displacements of the freedoms, to work in, (n,)
     strained: NDArray[np.float64]  # stiffness times those, (n,)
     work: NDArray[np.float64]  # of the axes on the structure that they travel through, J, (1,)
-
-
-class EnergyAccount(NamedTuple):
-    """Account of the energy of a moving structure; it puts on no force."""
-
-    stiffness: NDArray[np.float64]  # as it is now, (n, n)
-    damping: NDArray[np.float64]  # as `_lower`, (n, n)
-    unit: NDArray[np.float64]  # (n,)
-    resisted: NDArray[np.float64]  # that damping times velocity at the end of the step, (n,)
-    power: NDArray[np.float64]  # dissipated at the end of the last step, W, (1,)
-    sums: NDArray[
-        np.float64
-    ]  # work of all forces on ports and dissipation since the start, J, (2,)
-    travel: NDArray[np.float64]  # work of the axes on the structure, J, (1,)
-    at_start: float  # stored energy, J
 
 
 def moving_structure(
@@ -151,7 +136,7 @@ def moving_structure(
     ]
     columns = {name: np.ascontiguousarray([table[name] for table in tables]) for name in tables[0]}
     ports = shapes[0].shape[0]
-    damping = np.array([_lower(one) for one in damping])
+    damping = np.array([lower_triangle(one) for one in damping])
     bus = _bus(columns, start, step, ports)
     if velocity is not None:
         moving = modes.shapes.T @ (reference.mass @ velocity)
@@ -181,48 +166,6 @@ def moving_structure(
         work=np.zeros(1),
     )
     return bus, group
-
-
-def energy_account(group: MovingStructure, bus: StructureSteps) -> EnergyAccount:
-    """Return the account of a structure at its start."""
-    return EnergyAccount(
-        group.stiffness_now,
-        group.damping_now,
-        group.unit,
-        np.zeros(group.unit.size),
-        np.array([_dissipated(group, bus)]),
-        np.zeros(2),
-        group.work,
-        _stored(group.stiffness_now, group.unit, bus),
-    )
-
-
-def _dissipated(group: MovingStructure, bus: StructureSteps) -> float:
-    """Power that the structure dissipates now, W."""
-    v = bus.state[group.unit.size :]
-    return float(v @ group.damping_now @ v)
-
-
-def _stored(
-    stiffness: NDArray[np.float64], unit: NDArray[np.float64], bus: StructureSteps
-) -> float:
-    q, v = bus.state[: unit.size] / unit, bus.state[unit.size :]
-    # a run that was left early may end far out
-    with np.errstate(over="ignore", invalid="ignore"):
-        return float(0.5 * (v @ v + q @ stiffness @ q))
-
-
-def energy_of(account: EnergyAccount, bus: StructureSteps) -> dict[str, float]:
-    """Energy since the start, J: work of forces and of travel, dissipated, and stored in addition.
-
-    The work of friction is among that of the forces.
-    """
-    return {
-        "work": float(account.sums[0]),
-        "travel": float(account.travel[0]),
-        "dissipated": float(account.sums[1]),
-        "stored": _stored(account.stiffness, account.unit, bus) - account.at_start,
-    }
 
 
 def _refined(
@@ -317,11 +260,6 @@ def _columns(
         "displacement": np.hstack([shapes / unit, nothing]).T,
         "velocity": np.hstack([nothing, shapes]).T,
     }
-
-
-def _lower(damping: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Lower triangle that dissipates as a symmetric damping does, with half of the entries."""
-    return np.tril(damping) + np.tril(damping, -1)
 
 
 def _bus(
@@ -466,25 +404,3 @@ def moving_forces(group, bus, clock):
             travelled = True
     if travelled:
         _follow(group, bus)
-
-
-@register_jitable(**INLINED)
-def energy_commit(group, bus, clock):  # noqa: ARG001
-    """Add work and dissipation of the step.
-
-    The work is exact but for the mean of a displacement, which is by Hermite quadrature; the
-    dissipation by the trapezoidal rule, whose errors within a vibration cancel.
-    """
-    h, n = bus.step, group.unit.shape[0]
-    work = 0.0
-    for p in range(bus.u.shape[0]):
-        u0, u1 = bus.u_before[p], bus.u[p]
-        mean = 0.5 * (u0 + u1) + h / 12.0 * (bus.v_before[p] - bus.v[p])
-        work += bus.force[p] * (u1 - u0) + bus.change[p] * (u1 - mean)
-    multiply_lower(group.damping, bus.after[n:], group.resisted, n)
-    power = 0.0
-    for i in range(n):
-        power += bus.after[n + i] * group.resisted[i]
-    group.sums[0] += work
-    group.sums[1] += 0.5 * h * (group.power[0] + power)
-    group.power[0] = power

@@ -165,6 +165,11 @@ def multiply(matrix, values, product, size):
             product[i] += matrix[j, i] * value
 
 
+def lower_triangle(damping: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lower triangle that dissipates as a symmetric damping does, with half of the entries."""
+    return np.tril(damping) + np.tril(damping, -1)
+
+
 @register_jitable(**INLINED)
 def multiply_lower(matrix, values, product, size):
     """Product of a lower triangle (size, size), given not transposed, from the left: values L.

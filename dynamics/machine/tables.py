@@ -11,16 +11,16 @@ from dynamics.drive.backlash import BacklashTable, backlash_table
 from dynamics.friction.law import FrictionLaw
 from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
+from dynamics.machine.energy import (
+    SOURCES,
+    EnergyAccount,
+    account_of_moving,
+    account_of_structure,
+    energy_of,
+)
 from dynamics.machine.groups import ConstantForces, ControlledDrives, Loads, frictions_on_ports
 from dynamics.machine.modal_structure import ModalSteps, modal_energy, modal_structure
-from dynamics.machine.moving_structure import (
-    EnergyAccount,
-    MachinesAlong,
-    MovingStructure,
-    energy_account,
-    energy_of,
-    moving_structure,
-)
+from dynamics.machine.moving_structure import MachinesAlong, MovingStructure, moving_structure
 from dynamics.machine.steps import StructureSteps, structure_steps
 from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
@@ -83,7 +83,7 @@ def machine_tables(
     else:
         bus, moving = _following(along, rows, port, step, velocity)
         explicit += (moving,)
-        accounts += (energy_account(moving, bus),)
+        accounts += (account_of_moving(moving, bus, _sources(machine, port)),)
     if machine.drives:
         explicit += (_controlled(machine, step, points, port),)
     if machine.preloads:
@@ -103,8 +103,29 @@ def machine_tables(
     return StructureTables(bus, explicit, (*implicit, *accounts), port)
 
 
+def with_energy_account(tables: StructureTables, machine: Machine) -> StructureTables:
+    """Same tables with an account of the energy, as those of a structure along its axes have."""
+    if any(isinstance(group, EnergyAccount) for group in tables.implicit):
+        return tables
+    sources = _sources(machine, tables.port)
+    account = account_of_structure(machine.structure, tables.bus, sources)
+    return tables._replace(implicit=(*tables.implicit, account))
+
+
+def _sources(machine: Machine, port: Mapping[str, int]) -> list[int]:
+    """What puts the force on each port, as a number in `SOURCES`; loads act at outputs too."""
+    names = {
+        **{f"drive {one.name}": "drives" for one in machine.drives},
+        **{_friction(one): "friction" for one in machine.frictions},
+        **{one.name: "preloads" for one in machine.preloads},
+        **{f"backlash {one.name}": "backlash" for one in machine.backlashes},
+    }
+    numbers = {name: number for number, name in enumerate(SOURCES)}
+    return [numbers[names.get(name, "loads")] for name in port]
+
+
 def energy_of_structure(tables: StructureTables) -> dict[str, float]:
-    """Energy of a structure that follows its axes, J, as `energy_of`; empty of others."""
+    """Energy where it is accounted for, J, as `energy_of`; empty elsewhere."""
     for group in tables.implicit:
         if isinstance(group, EnergyAccount):
             return energy_of(group, tables.bus)

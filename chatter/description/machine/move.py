@@ -18,6 +18,7 @@ from dynamics.trajectory.motion import Trajectory
 from dynamics.trajectory.path import Path, circle, polyline, square
 from dynamics.trajectory.path_motion import PathMotion
 from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMotion
+from dynamics.trajectory.run_in import WithRunIn
 from dynamics.trajectory.spatial_path import PathInSpace
 
 _LENGTH = QuantityField("length")
@@ -47,6 +48,8 @@ class Course(NamedTuple):
 
     trajectory: Trajectory
     path: Path | PathInSpace | None = None
+    #: s, between which the axes are to be on the path; always by default
+    part: tuple[float, float] | None = None
 
 
 class MoveSection(StateSection):
@@ -108,6 +111,9 @@ class MoveSection(StateSection):
         always = ("axes", "cycle", "standstill", "afterwards", "travel_positions")
         always = (*always, *StateSection.model_fields)
         problems = key_problems(self, "kind", _keys_of(self.kind), always)
+        if self.kind in AT_SPEED and (self.acceleration is None) != (self.jerk is None):
+            missing = "jerk" if self.jerk is None else "acceleration"
+            problems.append((missing, "is missing: a run-in needs both acceleration and jerk"))
         plane = self.kind in ("circle", "square", "polyline")
         if plane and len(self.axes) != 2:
             problems.append(("axes", f'kind = "{self.kind}" moves two axes, not {len(self.axes)}'))
@@ -162,7 +168,7 @@ def _jerk_limited(section: MoveSection) -> Course:
 
 def _constant_speed(section: MoveSection) -> Course:
     nothing = np.zeros(len(section.axes))
-    return Course(ConstantSpeedMove(nothing, np.array(section.travel), section.velocity))
+    return _run_in(section, ConstantSpeedMove(nothing, np.array(section.travel), section.velocity))
 
 
 def _sine(section: MoveSection) -> Course:
@@ -178,7 +184,14 @@ def _sine(section: MoveSection) -> Course:
 def _circle(section: MoveSection) -> Course:
     centre = np.array([-section.radius, 0.0])
     motion = CircleMotion(centre, section.radius, section.velocity, section.revolutions)
-    return Course(motion, circle(centre, section.radius))
+    return _run_in(section, motion, circle(centre, section.radius))
+
+
+def _run_in(section: MoveSection, motion: Trajectory, path: Path | None = None) -> Course:
+    if section.acceleration is None:
+        return Course(motion, path)
+    led = WithRunIn(motion, section.acceleration, section.jerk)
+    return Course(led, path, led.part)
 
 
 def _square(section: MoveSection) -> Course:
@@ -205,6 +218,8 @@ COURSES: dict[str, CourseKind] = {
     "polyline": CourseKind(("points", "fillet", *_LIMITS), _polyline),
 }
 
+#: kinds of moves that begin and end at speed, unless acceleration and jerk of a run-in are given
+AT_SPEED = ("constant speed", "circle")
 #: kind of a move that is read from a file -> its keys, and whether each is needed
 OF_FILES: dict[str, dict[str, bool]] = {
     "nc program": {
@@ -217,4 +232,7 @@ OF_FILES: dict[str, dict[str, bool]] = {
 
 def _keys_of(kind: str) -> dict[str, bool]:
     """Keys of a kind, and whether each is needed."""
-    return OF_FILES[kind] if kind in OF_FILES else dict.fromkeys(COURSES[kind].keys, True)
+    if kind in OF_FILES:
+        return OF_FILES[kind]
+    of_run_in = dict.fromkeys(("acceleration", "jerk") if kind in AT_SPEED else (), False)
+    return dict.fromkeys(COURSES[kind].keys, True) | of_run_in

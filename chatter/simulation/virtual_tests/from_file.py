@@ -25,7 +25,7 @@ from chatter.description.machine.frequency_response import (
 )
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.machine_or_path import takes_machine_or_path
-from chatter.description.machine.move import MoveSection
+from chatter.description.machine.move import AT_SPEED, MoveSection
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.simulation.virtual_tests.courses import course_of
@@ -238,7 +238,13 @@ def file_move(
         loops = (drive.controller.position for drive in machine.drives)
         cycle = interpolation_cycle((loop.timing.sample_time for loop in loops), file.step)
     plan = MovePlan(
-        course.trajectory, section.axes, cycle, section.standstill, section.afterwards, course.path
+        course.trajectory,
+        section.axes,
+        cycle,
+        section.standstill,
+        section.afterwards,
+        course.path,
+        course.part,
     )
     steps = (section.standstill + course.trajectory.duration + section.afterwards) / file.step
     if not steps <= _MOST_STEPS:
@@ -261,7 +267,19 @@ def file_move(
             along,
         )
     units = ("N" if file.axis[one].drive.motor_is_linear else "N*m" for one in section.axes)
-    return replace(result, effort_units=tuple(units))
+    notes = _steps_of_velocity(name, section, plan)
+    return replace(result, effort_units=tuple(units), notes=notes)
+
+
+def _steps_of_velocity(name: str, section: MoveSection, plan: MovePlan) -> tuple[str, ...]:
+    """Note where the set points begin at speed, with the machine at rest."""
+    speed = float(np.linalg.norm(plan.trajectory.at(0.0).velocity))
+    if speed <= _RESTING:
+        return ()
+    text = f"the set points begin with a step of the velocity, from rest to {1e3 * speed:.4g} mm/s"
+    if section.kind in AT_SPEED:
+        text += f"; acceleration and jerk of [move.{name}] make a run-in"
+    return (text,)
 
 
 def _along(

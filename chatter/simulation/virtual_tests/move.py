@@ -47,6 +47,8 @@ class MovePlan:
     afterwards: float = 0.1  # time simulated behind its end, s
     #: for the contour error: a plane path of the first two axes, or one in space of all of them
     path: Path | PathInSpace | None = None
+    #: s, of the trajectory, between which the axes are to be on the path; always by default
+    part: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -71,10 +73,10 @@ class MoveResult(BriefRepr, NotebookResult):
     interrupted: bool
     #: of each axis, "N" of linear motors and "N*m" of others; none where motors are not known
     effort_units: tuple[str, ...] = ()
-    #: J, over the move, of a structure that follows its axes: work of motors, frictions and
-    #: preloads, work of the travel through the strained structure, dissipated in it, stored in
-    #: addition; empty where the structure stays as it is at the start
+    #: J, over the move: work of motors and preloads, what frictions took, work of the travel in
+    #: the strained structure, dissipated in it, stored in addition
     energy: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()  # on how the move begins
 
     def effort_unit(self, column: int) -> str:
         """Unit of the effort of an axis."""
@@ -99,14 +101,14 @@ class MoveResult(BriefRepr, NotebookResult):
                 error = (self.wanted - self.tool)[:, column]
                 axes[axis]["tool_error_um"] = _largest(error, 1e6)
         contour = None if self.contour is None else _largest(self.contour, 1e6)
-        energy = {"energy_J": self.energy} if self.energy else {}
         return {
             "machine": self.name,
             "duration_s": float(self.time[-1]) if self.time.size else 0.0,
             "axes": axes,
             "contour_error_um": contour,
             "interrupted": self.interrupted,
-            **energy,
+            "energy_J": self.energy,
+            "notes": [*self.notes, *self.left_behind()],
         }
 
     def left_behind(self) -> list[str]:
@@ -137,7 +139,7 @@ class MoveResult(BriefRepr, NotebookResult):
                 if key in largest
             )
             told.append(f"axis {axis}: tracking error at most {errors}; effort at most {effort}")
-        return told + self.left_behind()
+        return [*told, *self.notes, *self.left_behind()]
 
     def plot(self) -> Figure:
         """Picture of the move."""
@@ -207,7 +209,10 @@ def axes_moved(
     )
     duration = len(points.position) * points.steps * step + plan.afterwards
     finer = _records_a_cycle(machine, points.steps)
-    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer, along=along)
+    stride = points.steps // finer
+    inputs = RunInputs(
+        duration, points, outputs=rows, stride=stride, along=along, energy_accounted=True
+    )
     run = _by_cycle(run_machine(machine, step, inputs, progress), finer)
     columns = [machine.axes.index(axis) for axis in plan.axes]
     # a row is read at the end of its cycle, when the next set point holds
@@ -217,7 +222,7 @@ def axes_moved(
     motor = _mean_of_drives(
         machine, plan.axes, lambda one: _travel(one) * run.displacement[f"drive {one.name}"]
     )
-    contour = _contour(plan, motor if tip is None else tip)
+    contour = _contour(plan, run.time, motor if tip is None else tip)
     return MoveResult(
         name,
         tuple(plan.axes),
@@ -237,14 +242,23 @@ def axes_moved(
     )
 
 
-def _contour(plan: MovePlan, travel: NDArray[np.float64]) -> NDArray[np.float64] | None:
-    """Distance from the path of axes that travelled from its start, m; None without a path."""
+def _contour(
+    plan: MovePlan, time: NDArray[np.float64], travel: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Distance from the path of axes that travelled from its start, m; None without a path.
+
+    It is 0 where they are not to be on the path, in a run-in.
+    """
     if plan.path is None:
         return None
     if isinstance(plan.path, PathInSpace):
         return plan.path.distance(travel)
     start = np.asarray(plan.trajectory.at(0.0).position, dtype=np.float64)[:2]
-    return contour_error(plan.path, travel[:, :2] + start).error
+    error = contour_error(plan.path, travel[:, :2] + start).error
+    if plan.part is None:
+        return error
+    begin, end = (plan.standstill + one for one in plan.part)
+    return np.where((time >= begin) & (time <= end), error, 0.0)
 
 
 def _records_a_cycle(machine: Machine, steps: int) -> int:

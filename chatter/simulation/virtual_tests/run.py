@@ -15,7 +15,7 @@ from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
 from dynamics.machine.moving_structure import MachinesAlong
-from dynamics.machine.tables import energy_of_structure, machine_tables
+from dynamics.machine.tables import energy_of_structure, machine_tables, with_energy_account
 from dynamics.machine.travel_limit import TravelLimit
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
@@ -41,8 +41,7 @@ class MachineRun:
     velocity: Mapping[str, NDArray[np.float64]]  # m/s or rad/s
     force: Mapping[str, NDArray[np.float64]]  # N or N m
     interrupted: bool = False
-    #: J, since the start, of a structure that follows its axes: work of all forces, of the travel
-    #: through the strained structure, dissipated, stored in addition; empty of others
+    #: J, since the start, as `dynamics.machine.energy.energy_of`; empty where not accounted for
     energy: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -61,6 +60,7 @@ class RunInputs:
     outputs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # (n,), rows read
     stride: int = 1  # steps from one recorded row to the next
     along: MachinesAlong | None = None  # structure along axes that it follows
+    energy_accounted: bool = False  # also of a structure that stays as it is, for a fifth more time
 
 
 def _check_memory(rows: int, ports: int, duration: float) -> None:
@@ -90,6 +90,8 @@ def run_machine(
         tables = machine_tables(
             machine, step, inputs.points, inputs.loads, inputs.outputs, along=inputs.along
         )
+        if inputs.energy_accounted:
+            tables = with_energy_account(tables, machine)
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
     stride = inputs.stride
