@@ -132,12 +132,16 @@ def fitted_periods(variation, fit, speeds, pattern):
 
 
 @njit(**INNER_KERNEL)
-def in_mean_angle(rotation):
-    """The same rotation with the mean angle in place of time: the mean speed is 1."""
+def in_mean_angle(rotation, pattern):
+    """The same rotation with the mean angle in place of time: the mean speed is 1.
+
+    `pattern` is the angle after which the tool repeats itself, rad. Rotations of like periods are
+    the same to the last digit.
+    """
     return SpindleRotation(
         1.0,
         rotation.amplitude,
-        rotation.frequency / rotation.speed,
+        rotation.cycles / (rotation.patterns * pattern),
         rotation.triangle,
         rotation.patterns,
         rotation.cycles,

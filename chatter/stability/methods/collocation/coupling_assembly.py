@@ -109,8 +109,8 @@ def assemble_couplings(cut, rotation, layout, positions, speed, depth, scratch):
 def coupling_assemblies(cut, speeds, depths):
     """Coupling assemblies of n points of speed (rad/s) and depth (m).
 
-    Neighbours of equal depth and equal elements share one at a constant speed; at a varying speed
-    neighbours of equal speed and equal elements share all positions.
+    Neighbours of equal depth, equal periods and equal elements share one; at a varying speed
+    neighbours of equal periods and equal elements share all positions.
     """
     arrays = cut.arrays
     # as a literal it would be compiled for apart
@@ -122,10 +122,10 @@ def coupling_assemblies(cut, speeds, depths):
     varying = np.any(arrays.segments.delay_index < 0)
     positions, sources = empty_positions(), empty_sources(1, rank, (per_element + 1) * rank)
     for i in range(speeds.shape[0]):
+        patterns, cycles = rotation.patterns, rotation.cycles
         if not constant:
-            rotation = in_mean_angle(
-                spindle_rotation_at(arrays.variation, arrays.fit, speeds[i], period)
-            )
+            rotation = spindle_rotation_at(arrays.variation, arrays.fit, speeds[i], period)
+            rotation = in_mean_angle(rotation, period)
         same_depth = i > 0 and depths[i] == depths[i - 1]
         kept = same_depth
         if not same_depth:
@@ -135,8 +135,7 @@ def coupling_assemblies(cut, speeds, depths):
         needed = element_counts(cut, borders, rotation, speeds[i], depths[i])
         resolved = speed_step(speeds[i], _SPEED_STEP) if varying else math.inf
         kept = kept and speed == resolved and same_structure(needed, counts)
-        if not constant:
-            kept = kept and i > 0 and speeds[i] == speeds[i - 1]
+        kept = kept and rotation.patterns == patterns and rotation.cycles == cycles
         if not kept:
             counts, speed = needed, resolved
             layout = element_layout(borders, counts, rotation, period)

@@ -73,9 +73,8 @@ def points_of_periods(cut, speeds, depth):
     period = arrays.period_angle
     borders = period_borders(arrays.segments, period, depth)
     for i in range(speeds.shape[0]):
-        rotation = in_mean_angle(
-            spindle_rotation_at(arrays.variation, arrays.fit, speeds[i], period)
-        )
+        rotation = spindle_rotation_at(arrays.variation, arrays.fit, speeds[i], period)
+        rotation = in_mean_angle(rotation, period)
         counts = element_counts(cut, borders, rotation, speeds[i], depth)
         layout = element_layout(borders, counts, rotation, period)
         out[i] = layout.cut_start.shape[0] * cut.points.weight.shape[0]

@@ -53,7 +53,6 @@ class Positions(NamedTuple):
     earlier_element: IntegerArray  # that it stood in over each distinct delay (N, G)
     earlier_point: IntegerArray  # the only point of it that counts, or -1 (N, G)
     earlier_share: Array  # of each point of it (N, G, p + 1)
-    last: Array  # spindle angle, mean angle and speed that were found last (G, 3)
 
 
 class SpindleState(NamedTuple):
@@ -80,12 +79,10 @@ def positions_of(cut, layout, rotation):
     points, delays = cut.points, cut.arrays.segments.distinct_delay.shape[0]
     count = points.weight.shape[0]
     rows = layout.cut_start.shape[0] * count
-    last = np.zeros((delays, 3))
-    last[:, 2] = 1.0
     positions = Positions(
         np.empty(rows), np.empty(rows), np.empty((rows, count)),
         np.full((rows, delays), _UNKNOWN), np.empty((rows, delays), dtype=np.int64),
-        np.empty((rows, delays, count + 1)), last,
+        np.empty((rows, delays, count + 1)),
     )  # fmt: skip
     _stand(points, layout, rotation, positions)
     return positions
@@ -111,8 +108,7 @@ def empty_positions():
     """Positions before there are any."""
     whole = np.empty((0, 0), dtype=np.int64)
     return Positions(
-        np.empty(0), np.empty(0), np.empty((0, 0)), whole, whole, np.empty((0, 0, 0)),
-        np.empty((0, 0)),
+        np.empty(0), np.empty(0), np.empty((0, 0)), whole, whole, np.empty((0, 0, 0))
     )  # fmt: skip
 
 
@@ -267,11 +263,12 @@ def couple_edges(cut, edge, layout, rotation, state, row, first_source, sources,
 @njit(**LEAF_KERNEL)
 def _find_earlier(cut, layout, rotation, positions, row, delay):
     """Find the element and the position in it of the earlier motion at a row over a delay."""
-    angle = positions.angle[row] - cut.arrays.segments.distinct_delay[delay]
-    # next to what was found last
-    last = positions.last[delay]
-    time = time_near(rotation, angle, last[1] + (angle - last[0]) / last[2])
-    last[0], last[1], last[2] = angle, time, speed_at(rotation, time)
+    back, count = cut.arrays.segments.distinct_delay[delay], positions.span_share.shape[1]
+    e, i = row // count, row % count
+    now = layout.cut_start[e] + cut.points.position[i + 1] * layout.cut_length[e]
+    # from the row alone: what is found does not depend on the order of the rows
+    near_it = now - back / positions.speed[row]
+    time = time_near(rotation, positions.angle[row] - back, near_it)
     element, position = element_before(layout, time)
     share = positions.earlier_share[row, delay]
     near = shares_of_points(cut.points.position, cut.points.barycentric, position, share)

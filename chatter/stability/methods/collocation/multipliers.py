@@ -125,13 +125,14 @@ def _solved_together(
 
 def _neighbours_together(cut: ElementCut, speeds: Array, depths: Array) -> IntegerArray:
     """Order of the points in which those follow each other that can share work."""
-    if varies(cut):
-        # those of like periods go side by side; at one speed much is shared
-        patterns, cycles = periods(cut, speeds)
-        return np.lexsort((depths, speeds, cycles, patterns))
     # at one depth much is shared, at neighbouring speeds most of it
     _, row, count = np.unique(depths, return_inverse=True, return_counts=True)
-    return np.lexsort((speeds, np.where(count[row] > 1, depths, 0.0)))
+    rows = np.where(count[row] > 1, depths, 0.0)
+    if not varies(cut):
+        return np.lexsort((speeds, rows))
+    # those of like periods go side by side
+    patterns, cycles = periods(cut, speeds)
+    return np.lexsort((speeds, rows, cycles, patterns))
 
 
 def converged_multiplier(
