@@ -200,7 +200,7 @@ def _compiled(
         notes += ("tool.axial_error changes no force: the edge is parallel to the tool axis",)
     if course is not None:
         notes += _notes_on(course, case)
-    if case.stock is not None:
+    if case.stock is not None and course is None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     notes += tuple(notes_on_worn_flank(case, force_law(case, helix_angles(case)[0])))
     chip = "inclined" if is_inclined(case) else "delay"
@@ -251,8 +251,8 @@ def _notes_on(course: ToolCourse, case: Case) -> tuple[str, ...]:
     told = " to ".join(f"{speed:.6g}" for speed in speeds)
     notes = [
         f"{file}: {course.duration:.4g} s at {told} rpm, up to "
-        f"{units_of(case).length.text(course.feed_per_tooth)} a tooth; the verdict is that of the "
-        "whole record"
+        f"{units_of(case).length.text(course.feed_per_tooth)} a tooth; the verdict is that of its "
+        "parts at a constant feed"
     ]
     if course.in_air.size:
         spent = float(np.diff(course.in_air, axis=1).sum())

@@ -1,10 +1,12 @@
 """Chatter or not: by the record of a simulated cut, and by perturbed runs where need be."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
 from chatter.detection.chatter_detection import Detection, detect_chatter
@@ -15,7 +17,7 @@ from chatter.simulation.perturbation.lyapunov_verdict import (
     lyapunov_verdict,
 )
 from chatter.simulation.result import SimulationResult
-from chatter.simulation.tool_course import ToolCourse
+from chatter.simulation.steady_parts import in_direction_of_feed, may_be_modulation, steady_parts
 from cutting.chip.discrete_chip import DiscreteCut
 from dynamics.modal.modes import inside_band
 
@@ -26,8 +28,6 @@ _LEAST_CYCLES = 12.0
 _DELAYED, _CARVED = 0.005, 0.03
 #: share of the lowest resonance or loop corner below which motion is no chatter
 _WELL_BELOW = 0.25
-#: of the highest speed of a program, by which it falls from row to row where it stops
-_EVEN = 1e-9
 #: helix angles within this, rad, are the same
 _SAME_HELIX = 1e-12
 
@@ -57,8 +57,11 @@ def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
             f"the run holds fewer than {_LEAST_CYCLES:g} cycles of the lowest mode, "
             f"{slowest:.4g} Hz",
         )
+    parts = steady_parts(result)
+    if parts is not None:
+        return _over_parts(result, parts, slowest)
     try:
-        record = _cut_record(result)
+        record = _cut_record(result, slice(None), result.displacement)
     except InputError as error:
         return None, str(error)
     found = detect_chatter(record)
@@ -71,6 +74,52 @@ def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
     if not varies and perturbed.stable:
         return found, ""
     return _by_perturbation(perturbed, found, result.setup.spindle.speed), ""
+
+
+def _over_parts(
+    result: SimulationResult, parts: Sequence[slice], slowest: float
+) -> tuple[Detection | None, str]:
+    """Verdict of a program: chatter where any steady part has it, else that of the longest."""
+    long = [rows for rows in parts if _holds_enough(result, rows, slowest)]
+    if not long:
+        return None, (
+            f"no part of the program at a constant feed, on a line or an arc, holds "
+            f"{_LEAST_REVOLUTIONS:g} revolutions and {_LEAST_CYCLES:g} cycles of the lowest mode, "
+            f"{slowest:.4g} Hz"
+        )
+    found = []
+    for rows in long:
+        try:
+            record = _cut_record(result, rows, in_direction_of_feed(result, rows))
+        except InputError as error:
+            return None, str(error)
+        one = detect_chatter(record)
+        if not (one.verdict == "chatter" and may_be_modulation(result, rows, one)):
+            found.append((one, rows))
+    if not found:
+        return None, "on its arcs chatter is not told from the forces that turn with the feed"
+    return _worst(result, found), ""
+
+
+def _holds_enough(result: SimulationResult, rows: slice, slowest: float) -> bool:
+    angle, time = result.spindle_angle[rows], result.time[rows]
+    turned = float(angle[-1] - angle[0]) / (2.0 * math.pi)
+    return turned >= _LEAST_REVOLUTIONS and float(time[-1] - time[0]) * slowest >= _LEAST_CYCLES
+
+
+def _worst(result: SimulationResult, found: Sequence[tuple[Detection, slice]]) -> Detection:
+    """The surest chatter, or the longest part, with its time in the reason."""
+    chatters = [one for one in found if one[0].verdict == "chatter"]
+    if chatters:
+        worst, rows = max(chatters, key=lambda one: one[0].confidence)
+    else:
+        worst, rows = max(found, key=lambda one: one[1].stop - one[1].start)
+    if len(found) == 1 and rows.stop - rows.start == len(result.time):
+        return worst
+    begin, end = result.time[rows.start], result.time[rows.stop - 1]
+    where = f"from {begin:.3g} to {end:.3g} s, at a constant feed, "
+    share = f"; {len(chatters)} of {len(found)} such parts chatter" if len(found) > 1 else ""
+    return replace(worst, reason=f"{where}{worst.reason}{share}")
 
 
 def _large(result: SimulationResult) -> bool:
@@ -86,16 +135,17 @@ def _steady(result: SimulationResult) -> bool:
     return result.case.stock is None and not bent and result.setup.on_machine is None
 
 
-def _cut_record(result: SimulationResult) -> CutRecord:
+def _cut_record(
+    result: SimulationResult, rows: slice, displacement: NDArray[np.float64]
+) -> CutRecord:
     cutter, slices = result.setup.cutter, result.setup.slices
     widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
     # flutes of different helix are no more alike than teeth out of true
     known = np.ptp(cutter.helix) <= _SAME_HELIX
-    rows = _before_the_last_stop(result)
     return CutRecord(
         time=result.time[rows],
         spindle_angle=result.spindle_angle[rows],
-        displacements=result.displacement[rows],
+        displacements=displacement,
         tooth_angles=np.sort(cutter.tooth_angles),
         feed_per_tooth=result.case.cut.feed_per_tooth,
         forces=result.force[rows],
@@ -104,24 +154,6 @@ def _cut_record(result: SimulationResult) -> CutRecord:
         speed_follows=result.setup.turned_by_port,
         negligible=_CARVED if isinstance(result.setup.groups[0], DiscreteCut) else _DELAYED,
     )
-
-
-def _before_the_last_stop(result: SimulationResult) -> slice:
-    """Rows up to where a program begins to stop for the last time: the force falls to nothing."""
-    course = result.setup.path
-    if not isinstance(course, ToolCourse):
-        return slice(None)
-    velocity = np.asarray(course.trajectory.at(result.time).velocity, dtype=np.float64)
-    speed = np.linalg.norm(velocity, axis=1)
-    speed[~np.isfinite(speed)] = 0.0
-    for begin, end in course.in_air:
-        speed[(result.time >= begin) & (result.time <= end)] = 0.0
-    cutting = np.flatnonzero(speed > 0.0)
-    if not cutting.size:
-        return slice(None)
-    does_not_fall = np.diff(speed[: cutting[-1] + 1]) >= -_EVEN * speed.max()
-    held = np.flatnonzero(does_not_fall)
-    return slice(0, int(held[-1]) + 2 if held.size else int(cutting[-1]) + 1)
 
 
 def _lowest_frequency(result: SimulationResult) -> float:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from chatter import InputError
+from chatter import InputError, check
 from chatter.description.machine.machine_file import MachineFile
 from chatter.simulation.simulate import simulate
-from chatter.simulation.verdict import _before_the_last_stop
+from chatter.simulation.steady_parts import steady_parts
 from chatter.simulation.virtual_tests.from_file import move
 from tests.chatter.simulation.on_machine.coupled_machines import (
     body,
@@ -68,9 +68,10 @@ def test_the_stop_at_the_end_of_a_stable_program_is_no_chatter(tmp_path):
 def test_a_slow_block_at_the_end_is_judged_too(tmp_path):
     """4 mm at 20 mm/s, then 2 mm at 5 mm/s: the last quarter second is cut at the lower feed."""
     result = simulate(programmed(tmp_path, two_axes(), "G1 X4 F1200\nG1 X6 F300\n"))
-    rows = _before_the_last_stop(result)
-    judged = result.time[rows][-1]
-    assert judged > 0.2 + 0.3
+    first, last = steady_parts(result)
+    assert np.ptp(result.time[first]) > 0.15
+    assert np.ptp(result.time[last]) > 0.35
+    judged = result.time[last][-1]
     # 5 m/s2 and 400 m/s3: 5 mm/s are gone within 2 (0.005 / 400)^0.5 s
     assert result.time[-1] - judged < 0.1
 
@@ -140,3 +141,38 @@ def test_a_direction_that_no_axis_moves(tmp_path):
     machine["connector"]["ways"] = spring("saddle", "bed")
     with pytest.raises(InputError, match=r"simulation\.program.*along y"):
         simulate(programmed(tmp_path, machine))
+
+
+CORNERS = {
+    "corner near the end": "G1 X8 F1200\nG1 Y8\nG1 X10\n",
+    "dwell near the end": "G1 X8 F1200\nG4 F0.3\nG1 X10\n",
+    "stairs": "G1 X5 F1200\nG1 Y5\nG1 X10\nG1 Y10\nG1 X11\n",
+}
+#: a slot by a tool of four straight teeth, in a material that a soft slide bears to a few mm
+SLOT = {
+    "tool": {"helix": "0 deg"},
+    "cut": {"mode": "slot", "radial_depth": "16 mm"},
+    "material": {"Ktc": 1.8e9, "Krc": 6e8, "Kac": 0.0},
+}
+
+
+@pytest.mark.parametrize("program", CORNERS)
+def test_a_program_with_corners_chatters_as_the_plain_cut_does(tmp_path, program):
+    """Transients of axes behind corners and stops are no chatter; the limit is of the modes."""
+    machine = two_axes(soft=True)
+    machine["connector"]["guide"]["stiffness"]["y"] = 2e7
+    machine["connector"]["guide"]["damping"]["y"] = 5e3
+    case = programmed(tmp_path, machine, CORNERS[program], **SLOT)
+    structure = case.structure.model_dump(exclude_unset=True)
+    plain = cut_case({**structure, "feed": [1.0, 0.0, 0.0]}, revolutions=20, **SLOT)
+    limit = 1e-3 * check(plain).summary()["critical_depth_mm"]
+    assert 1e-3 < limit < 0.02
+    for share, verdict in ((0.5, "stable"), (1.4, "chatter")):
+        found = simulate(case, {"cut.axial_depth": share * limit}).detection
+        assert found.verdict == verdict, found.reason
+
+
+def test_a_program_without_a_long_line_is_not_judged(tmp_path):
+    result = simulate(programmed(tmp_path, two_axes(), "G1 X2 F1200\nG1 Y2\nG1 X4\nG1 Y4\n"))
+    assert result.detection is None
+    assert result.why_no_verdict.startswith("no part of the program at a constant feed")
