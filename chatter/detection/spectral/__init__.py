@@ -13,6 +13,7 @@ frame_evidence       all of this over the frames of a recording
 envelope             whether a line is a limit cycle or a mode that noise shakes
 steady_family        whether a small line is steady, with sidebands at the teeth
 line_of_cut          whether a line is that of a cut that chatters, or of the machine
+sideband_family      chatter whose own sidebands show the speed that it is judged by
 segments             segments of one verdict, their frequency, bifurcation and confidence
 two_speeds           the same where the lines speak for another speed than the stated one
 overload             samples at the ends of a recorder's range

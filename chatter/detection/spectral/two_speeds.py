@@ -29,6 +29,7 @@ from chatter.detection.spectral.segments import (
     Segment,
     segments_of,
 )
+from chatter.detection.spectral.sideband_family import with_sideband_families
 from chatter.detection.spectral.stated_speed import FASTER, REFUTED
 
 #: confidence of a verdict, at the most, while the speed is in doubt
@@ -48,6 +49,11 @@ def judged(evidence: Evidence) -> list[Segment]:
     ----------
     evidence : Evidence
     """
+    return _joined(with_sideband_families(_judged_at_speeds(evidence), evidence))
+
+
+def _judged_at_speeds(evidence: Evidence) -> list[Segment]:
+    """Segments by the speed that was stated and by another that the lines speak for."""
     own = segments_of(evidence)
     if not any(one.verdict == CHATTER for one in own):
         own = [_supported(one, evidence) for one in own]
