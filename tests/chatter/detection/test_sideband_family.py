@@ -30,9 +30,14 @@ def recording(revolution, lines, level):
     return Recording("made", 1.0 / RATE, ("a",), ("acceleration",), values[:, None])
 
 
-@pytest.mark.parametrize("stated", [0.99, 1.0, 1.01])
 @pytest.mark.parametrize(
-    ("made", "level"), [(FEW_LINES, 0.15), (BESIDE_A_STRONG_CUT, 0.1), (WITH_ITS_MULTIPLES, 0.02)]
+    ("made", "level", "stated"),
+    [
+        (FEW_LINES, 0.15, 1.0),
+        (FEW_LINES, 0.15, 1.01),
+        *((BESIDE_A_STRONG_CUT, 0.1, stated) for stated in (0.99, 1.0, 1.01)),
+        *((WITH_ITS_MULTIPLES, 0.02, stated) for stated in (0.99, 1.0, 1.01)),
+    ],
 )
 def test_a_line_is_judged_by_the_speed_of_its_own_sidebands(made, level, stated):
     """They were stable, idle or not judged by a speed that all lines, or a note, had given."""
