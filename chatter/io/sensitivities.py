@@ -1,4 +1,7 @@
-"""Sensors whose file has volts: the user states their sensitivity, as in "force [2.25 mV/N]"."""
+"""Sensors whose file has volts, or a share of full scale, as WAV files have: "FS".
+
+The user states their sensitivity, as in "force [2.25 mV/N]" or "force [250 N/FS]".
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,15 @@ VOLTS = {
     **dict.fromkeys(("mV", "millivolts"), 1e-3),
     **dict.fromkeys(("uV", "\u00b5V", "\u03bcV"), 1e-6),
 }
+#: unit of what a recorder has as a share of its full scale
+FULL_SCALE = "FS"
 _SENSITIVITY = re.compile(
     r"(?P<number>\d+(\.\d*)?([eE][+-]?\d+)?)\s*(?P<unit>[^\s/]+)\s*/\s*(?P<per>.+)"
 )
 
 
 def with_sensitivities(table: Table, own_units: Sequence[str]) -> Table:
-    """Table of which columns of volts are in the unit of their stated sensitivity.
+    """Table of which columns of volts, or of full scale, are in the unit of their sensitivity.
 
     Parameters
     ----------
@@ -33,8 +38,8 @@ def with_sensitivities(table: Table, own_units: Sequence[str]) -> Table:
     Raises
     ------
     MeasurementError
-        If a column of volts has another unit stated and no sensitivity, or a sensitivity is stated
-        of what is no voltage.
+        If a column of volts or of full scale has another unit stated and no sensitivity, or a
+        sensitivity is stated of what is neither.
     """
     columns = [
         _in_unit(table, index, own_unit.strip())
@@ -46,7 +51,15 @@ def with_sensitivities(table: Table, own_units: Sequence[str]) -> Table:
 def _in_unit(table: Table, index: int, own_unit: str) -> Column:
     column = table.columns[index]
     found = _SENSITIVITY.fullmatch(column.unit.strip())
+    scales = {FULL_SCALE: 1.0} if own_unit == FULL_SCALE else VOLTS
     if found is None:
+        if own_unit == FULL_SCALE and column.unit not in ("", FULL_SCALE):
+            raise MeasurementError(
+                f"{table.path}: column {index + 1} is a share of full scale in the file, and "
+                f"--columns states {column.heading}: state what full scale is, such as "
+                f'"{column.name} [250 {column.unit}/{FULL_SCALE}]"; 1 where it is in '
+                f"{column.unit} already"
+            )
         if own_unit in VOLTS and column.unit and column.unit not in VOLTS:
             raise MeasurementError(
                 f"{table.path}: column {index + 1} is in {own_unit} in the file, and --columns "
@@ -57,16 +70,19 @@ def _in_unit(table: Table, index: int, own_unit: str) -> Column:
         return column
     number, unit, per = float(found["number"]), found["unit"], found["per"].strip()
     per = per[1:-1] if per.startswith("(") and per.endswith(")") else per
-    if unit not in VOLTS and per not in VOLTS:
+    known = {*VOLTS, FULL_SCALE}
+    if unit not in known and per not in known:
         return column
-    if (own_unit and own_unit not in VOLTS) or number == 0.0:
+    is_other = bool(own_unit) and own_unit not in scales
+    if is_other or number == 0.0 or not {unit, per} & scales.keys():
+        of = "full scale" if own_unit == FULL_SCALE else "volts"
         raise MeasurementError(
             f"{table.path}: column {index + 1} is in {own_unit or 'V'} in the file, and --columns "
-            f"states {column.heading}: a sensitivity above zero, of volts, was expected"
+            f"states {column.heading}: a sensitivity above zero, of {of}, was expected"
         )
-    volts = table.numbers(index) * VOLTS[own_unit or "V"]
-    if unit in VOLTS:
+    values = table.numbers(index) * scales[own_unit or "V"]
+    if unit in scales:
         return replace(
-            column, heading=f"{column.name} [{per}]", cells=volts / (number * VOLTS[unit])
+            column, heading=f"{column.name} [{per}]", cells=values / (number * scales[unit])
         )
-    return replace(column, heading=f"{column.name} [{unit}]", cells=volts * number / VOLTS[per])
+    return replace(column, heading=f"{column.name} [{unit}]", cells=values * number / scales[per])

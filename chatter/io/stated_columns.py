@@ -26,7 +26,8 @@ def read_signal_table(path: Path, columns: str | None = None) -> Table:
     columns : str, optional
         Names and units of all columns in their order, such as
         ``"time [s], force [N], acceleration [m/s^2]"``, instead of those of the file; of volts the
-        sensitivity of the sensor, ``"force [2.25 mV/N]"``.
+        sensitivity of the sensor, ``"force [2.25 mV/N]"``; of a share of full scale, as sound files
+        have, what full scale is, ``"force [250 N/FS]"``.
 
     Raises
     ------
@@ -40,7 +41,7 @@ def read_signal_table(path: Path, columns: str | None = None) -> Table:
     if one is CSV:
         table = read_with_headings(path, headings)
         return with_sensitivities(table, _units_of_text(path, len(headings)))
-    return _under(headings, signals_of(one, path))
+    return _under(headings, signals_of(one, path), one.own_unit)
 
 
 def read_signal_tables(path: Path, columns: str | None = None) -> list[Table]:
@@ -51,7 +52,7 @@ def read_signal_tables(path: Path, columns: str | None = None) -> list[Table]:
     tables = one.read_records(path).values()
     if columns is None:
         return list(tables)
-    return [_under(_headings(path, columns), table) for table in tables]
+    return [_under(_headings(path, columns), table, one.own_unit) for table in tables]
 
 
 def signals_of(one: Format, path: Path) -> Table:
@@ -77,8 +78,8 @@ def _headings(path: Path, columns: str) -> list[str]:
     return headings
 
 
-def _under(headings: list[str], table: Table) -> Table:
-    """Table under stated headings."""
+def _under(headings: list[str], table: Table, own_unit: str) -> Table:
+    """Table under stated headings, of a format whose signals have a unit of its own."""
     if len(headings) != len(table.columns):
         held = ", ".join(column.heading for column in table.columns)
         raise MeasurementError(
@@ -90,7 +91,8 @@ def _under(headings: list[str], table: Table) -> Table:
         for column, heading in zip(table.columns, headings, strict=True)
     ]
     under = table_of(table.path, stated, "columns")
-    return with_sensitivities(under, [column.unit for column in table.columns])
+    units = [column.unit or (own_unit if k else "") for k, column in enumerate(table.columns)]
+    return with_sensitivities(under, units)
 
 
 def _units_of_text(path: Path, count: int) -> list[str]:

@@ -10,6 +10,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.io.files import LARGEST_FILE, read_content
 from chatter.io.formats.format import Format
+from chatter.io.sensitivities import FULL_SCALE
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
 
@@ -123,5 +124,6 @@ COMPRESSED_SOUND = Format(
     'FLAC and others; needs "chatter[sound]"',
     extensions=tuple(_CONTAINERS),
     read_signals=read_sound,
+    own_unit=FULL_SCALE,
     recognises=lambda head: _container(head) is not None,
 )

@@ -38,6 +38,8 @@ class Format:
         Path -> StoredNodes: nodes of a finite element model.
     recognises : callable, optional
         First bytes of a file -> True where the content is of this format whatever its extension.
+    own_unit : str
+        Of the signals behind the time, where the format knows no other.
 
     Notes
     -----
@@ -54,6 +56,7 @@ class Format:
     read_matrices: Callable[[Path], list[StoredMatrix]] | None = None
     read_nodes: Callable[[Path], StoredNodes] | None = None
     recognises: Callable[[bytes], bool] = lambda head: False  # noqa: ARG005
+    own_unit: str = ""
 
     @property
     def holds(self) -> tuple[Content, ...]:

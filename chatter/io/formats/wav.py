@@ -10,6 +10,7 @@ import numpy as np
 from chatter.io.files import read_content
 from chatter.io.formats.format import Format
 from chatter.io.formats.named_arrays import require_size
+from chatter.io.sensitivities import FULL_SCALE
 from chatter.io.table import Column, Table, table_of
 from dynamics.frf.container import MeasurementError
 
@@ -67,5 +68,6 @@ WAV = Format(
     help="channels as a share of full scale, PCM or floating point",
     extensions=(".wav", ".wave"),
     read_signals=read_sound,
+    own_unit=FULL_SCALE,
     recognises=lambda head: head[:4] in (b"RIFF", b"RIFX", b"RF64") and head[8:12] == b"WAVE",
 )

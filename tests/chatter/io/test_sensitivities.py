@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import scipy.io.wavfile
 
 from chatter.description.errors import InputError
 from chatter.io.hammer_records import read_hammer_record
 from chatter.io.signals import read_signals
+from chatter.monitoring.detect import detect
 from chatter.studies.modal_test import modes
 from dynamics.frf.container import MeasurementError
 from tests.chatter.io.formats.test_files_people_have import (
@@ -82,3 +84,30 @@ def test_modes_of_volts_ask_for_the_sensitivities(tmp_path):
     path = as_text(tmp_path / "tap.csv", "Time [s],Hammer [mV],Acc [mV]", 1.0)
     with pytest.raises(InputError, match=r"of volts state the sensitivities: --columns"):
         modes([path])
+
+
+def as_sound(path):
+    """Force and acceleration in 16 bits, of which full scale is 4000 N and 2000 m/s^2."""
+    shares = np.column_stack([FORCE / 4000.0, ACCELERATION / 2000.0])
+    rate = round(1.0 / (TIME[1] - TIME[0]))
+    scipy.io.wavfile.write(path, rate, np.round(shares * 32768.0).astype(np.int16))
+    return path
+
+
+def test_a_share_of_full_scale_is_a_force_by_what_full_scale_is(tmp_path):
+    assert np.abs(FORCE).max() < 4000.0
+    assert np.abs(ACCELERATION).max() < 2000.0
+    path = as_sound(tmp_path / "cut.wav")
+    found = read_signals(path, columns="time [s], Fx [4000 N/FS], ax [0.5 FS/(km/s^2)]")
+    np.testing.assert_allclose(found["Fx"], FORCE, atol=4000.0 / 32768.0)
+    np.testing.assert_allclose(found["ax"], ACCELERATION, atol=2000.0 / 32768.0)
+
+
+def test_a_share_of_full_scale_is_not_taken_for_newtons(tmp_path):
+    path = as_sound(tmp_path / "cut.wav")
+    with pytest.raises(InputError, match=r"column 2 is a share of full scale .*\[250 N/FS\]"):
+        detect(path, "1000 rpm", 2, columns="time [s], force [N], ax [m/s^2]")
+    with pytest.raises(InputError, match=r"a sensitivity above zero, of full scale"):
+        detect(path, "1000 rpm", 2, columns="time [s], force [2 mV/N], ax [1 m/s^2/FS]")
+    # without a unit it stays what it is
+    assert read_signals(path, columns="time [s], left, right").keys() == {"time", "left", "right"}
