@@ -69,7 +69,9 @@ def _print_errors(summaries: dict) -> None:
         print_table(f"{name}: largest set less actual", titles, rows)
         if summary["contour_error_um"] is not None:
             print_line(f"largest contour error {summary['contour_error_um']:.4g} um")
-        energy = summary["energy_J"]
+        energy = summary.get("energy_J")
+        if not energy:
+            continue
         taken = ", ".join(
             f"{words} {energy[key]:.4g} J" for key, words in _ENERGIES.items() if key in energy
         )

@@ -8,6 +8,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.simulation.result import SimulationResult
 from chatter.stability.forced_vibration import neglected_in_steady_cut
+from chatter.stability.misfit_of_modes import neglected_misfit_of_modes
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.neglected_effects import (
     CHATTER,
@@ -116,7 +117,11 @@ def verdict_of(case: Case, spectral_radius: float, simulated: str) -> LinearVerd
     """
     method, model = _analysis_of(case)
     try:
-        effects = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, method))
+        effects = (
+            *neglected_resting_friction(model),
+            *neglected_misfit_of_modes(model, method),
+            *neglected_in_steady_cut(model, method),
+        )
     except (InputError, RunError):
         effects = ()
     verdict = STABLE if spectral_radius < 1.0 else CHATTER

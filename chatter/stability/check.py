@@ -31,6 +31,7 @@ from chatter.simulation.resolution import slices_of_inclined
 from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.misfit_of_modes import neglected_misfit_of_modes
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.neglected_effects import (
     CHATTER,
@@ -410,6 +411,7 @@ def check(
     begin(progress, "what linear methods leave out")
     neglected = (
         *neglected_resting_friction(model),
+        *neglected_misfit_of_modes(model, chosen),
         *neglected_in_steady_cut(model, chosen, limit.critical_depth),
     )
     radius = abs(multiplier.value)

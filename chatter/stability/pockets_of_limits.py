@@ -7,6 +7,7 @@ from chatter.stability.forced_vibration import neglected_in_steady_cut
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
+from chatter.stability.misfit_of_modes import neglected_misfit_of_modes
 from chatter.stability.model import MillingModel
 from chatter.stability.neglected_effects import EDGE_FORCES, NeglectedEffect
 from chatter.stability.pockets import Pocket, depth_margin, find_pockets
@@ -40,6 +41,7 @@ def pockets_of_limits(
     case, speeds = model.case, limits.spindle_speed
     neglected = (
         *neglected_resting_friction(model),
+        *neglected_misfit_of_modes(model, method),
         *neglected_in_steady_cut(model, method, limits.critical_depth),
     )
     margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
