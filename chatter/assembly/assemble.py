@@ -22,6 +22,7 @@ from chatter.assembly.tool_point import (
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
+from chatter.description.unit_system import METRIC, UnitSystem, units_of, units_of_content
 from chatter.description.units import rpm
 from chatter.description.wording import nearest
 from chatter.io.presentation import presentation
@@ -79,6 +80,8 @@ class Assembly(NotebookResult):
         Where the assembly names a case.
     notes : tuple of str
         Assumptions of the result.
+    units : UnitSystem
+        That the words and the picture are in: those of the case, or of the stick-out without one.
     """
 
     file: AssemblyFile
@@ -88,6 +91,7 @@ class Assembly(NotebookResult):
     fits: tuple[ModalFit, ...]
     lobes: StickOutLobes | None
     notes: tuple[str, ...]
+    units: UnitSystem = METRIC
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -238,7 +242,14 @@ def assemble(
         tuple(fits),
         _over_stick_out(case, tool, limits) if case is not None else None,
         tuple(_notes(case, tool, holder, file)),
+        _units(case, file),
     )
+
+
+def _units(case: Case | None, file: AssemblyFile) -> UnitSystem:
+    if case is not None:
+        return units_of(case)
+    return units_of_content({"tool": file.stated.get("stick_out", {})})
 
 
 def _entry(entries: Mapping[str, Mapping[str, Any]], kind: str, name: str, file: Any) -> Any:

@@ -15,6 +15,7 @@ from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.assembly.assemble import Assembly
+    from chatter.description.usual_units import UsualUnit
 
 
 def assemble(
@@ -56,33 +57,35 @@ def assemble(
 
 def _print_assembly(found: Assembly) -> None:
     summary = found.summary()
+    length, removal = found.units.instead_of("mm"), found.units.instead_of("cm³/min")
     rows = []
     for one in summary["stick_outs"]:
         stiffest = max(one["modes"], key=lambda m: 1 / (m["mass_kg"] * m["damping"]))
         rows.append(
             [
-                f"{one['stick_out_mm']:.4g}",
+                f"{one['stick_out_mm'] * length.factor:.4g}",
                 f"{1e6 * one['peak_receptance_m_per_N']:.3g}",
                 f"{stiffest['frequency_Hz']:.0f}",
-                _shown(one.get("lowest_critical_depth_mm")),
-                _shown(one.get("removal_rate_cm3_per_min")),
+                _shown(one.get("lowest_critical_depth_mm"), length),
+                _shown(one.get("removal_rate_cm3_per_min"), removal),
                 "" if found.lobes is None else f"{one['at_spindle_speed_rpm']:.0f}",
             ]
         )
     headers = [
-        "stick-out [mm]",
+        f"stick-out [{length.name}]",
         "peak [um/N]",
         "mode [Hz]",
-        "lowest limit [mm]",
-        "removal [cm³/min]",
+        f"lowest limit [{length.name}]",
+        f"removal [{removal.name}]",
         "at [rpm]",
     ]
     print_table(found.file.title or found.file.name, headers, rows)
-    print_answer(f"best stick-out {summary['best_stick_out_mm']:.4g} mm by {summary['best_by']}")
+    best = length.text(summary["best_stick_out_mm"])
+    print_answer(f"best stick-out {best} by {summary['best_by']}")
 
 
-def _shown(value: float | None) -> str:
-    return "" if value is None else f"{value:.3g}"
+def _shown(value: float | None, unit: UsualUnit) -> str:
+    return "" if value is None else f"{value * unit.factor:.3g}"
 
 
 def _print_library() -> None:

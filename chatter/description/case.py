@@ -19,7 +19,6 @@ from chatter.description.given_values import EXAMPLE_OF_PATCH, mapping_given, te
 from chatter.description.patchable import Description
 from chatter.description.path import Step, join_path
 from chatter.description.renamed import Renamed
-from chatter.description.section import raise_if_any
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.empirical import Empirical, problems_of_terms
 from chatter.description.sections.friction import Friction
@@ -113,15 +112,9 @@ class Case(Description):
     def _read_stated_cut(cls, data: Any) -> Any:
         return with_stated_cut(data)
 
-    @model_validator(mode="after")
-    def _check_engagement(self) -> Case:
-        if self.tool is not None and self.cut is not None:
-            raise_if_any(engagement_problems(self.cut, self.tool.diameter))
-        return self
-
     @classmethod
     def _problems_of_draft(cls, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
-        return engagement_problems_of_draft(data)
+        return engagement_problems_of_draft(data, units_of_content(data).length)
 
     @classmethod
     def _follow_from_others(cls, data: Mapping[str, Any]) -> Mapping[tuple[Step, ...], str]:
@@ -130,6 +123,7 @@ class Case(Description):
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         length = units_of_content(data).length
         return [
+            *engagement_problems(self.cut, self.tool, length),
             *depth_problems(self.cut, self.tool, length, data),
             *friction_problems(self.structure, self.friction),
             *optimum_problems(self.optimum, self.cut, self.tool, length),

@@ -14,6 +14,7 @@ from chatter.description.errors import InputError
 from chatter.description.path import Step, field_at
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.tool import Tool
+from chatter.description.unit_system import units_of_content
 from chatter.description.units import NUMBER, QuantityError, parse, rpm
 
 #: key as a shop states it -> key that it stands for
@@ -117,10 +118,12 @@ def _feed_per_tooth(cut: Mapping[str, Any], tool: Any) -> float | None:
         return None
     chip, most = feed * 2.0 * math.pi / (speed * teeth), field_at(Cut, ("feed_per_tooth",)).at_most
     if chip > most:
+        units = units_of_content({"cut": cut, "tool": tool})
+        length = units.length
         raise ValueError(
-            f"cut.feed_rate: {feed * 6e4:.4g} mm/min at {rpm(speed):.4g} rpm is {chip * 1e3:.4g} "
-            f"mm for each of {teeth} teeth; at most {most * 1e3:g} mm is allowed; a unit may be "
-            "wrong, that of the speed too"
+            f"cut.feed_rate: {units.feed_rate.text(feed)} at {rpm(speed):.4g} rpm is "
+            f"{length.text(chip)} for each of {teeth} teeth; at most {length.text(most, 'g')} is "
+            "allowed; a unit may be wrong, that of the speed too"
         )
     return chip
 

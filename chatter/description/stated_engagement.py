@@ -8,6 +8,7 @@ from typing import Any
 from chatter.description.path import field_at
 from chatter.description.sections.cut import ENGAGEMENTS, Cut
 from chatter.description.sections.tool import Tool
+from chatter.description.usual_units import UsualUnit
 from cutting.engagement.uncut_band import (
     SLOT,
     UncutBand,
@@ -42,24 +43,31 @@ def uncut_band(cut: Cut, tool: Tool) -> UncutBand:
     return band_beside_wall(cut.mode, min(cut.radial_depth, tool.diameter), radius)
 
 
-def engagement_problems(cut: Cut, diameter: float) -> list[tuple[str, str]]:
-    """Check the engagement against the diameter (m) of the tool.
+def engagement_problems(
+    cut: Cut | None, tool: Tool | None, length: UsualUnit
+) -> list[tuple[str, str]]:
+    """Check the engagement against the diameter of the tool, in words in a unit of length.
 
     Path and sentence of what is wrong are returned.
     """
+    if cut is None or tool is None:
+        return []
+    diameter = tool.diameter
     if cut.workpiece_width is not None:
-        return _place_problems(cut.workpiece_width, cut.tool_offset or 0.0, diameter)
+        return _place_problems(cut.workpiece_width, cut.tool_offset or 0.0, diameter, length)
     widths = {"radial_depth": cut.radial_depth, "stepover": cut.stepover}
     return [
         problem
         for key, width in widths.items()
         if width is not None
-        for problem in _width_problems(key, cut.mode, width, diameter)
+        for problem in _width_problems(key, cut.mode, width, diameter, length)
     ]
 
 
-def _width_problems(key: str, mode: str, width: float, diameter: float) -> list[tuple[str, str]]:
-    given, size = f"{width * 1e3:g} mm", f"{diameter * 1e3:g} mm"
+def _width_problems(
+    key: str, mode: str, width: float, diameter: float, length: UsualUnit
+) -> list[tuple[str, str]]:
+    given, size = length.text(width, "g"), length.text(diameter, "g")
     if width > diameter * (1.0 + 1e-9):
         return [(f"cut.{key}", f"{given} is more than the diameter of the tool, {size}")]
     if mode == "slot" and width < diameter * (1.0 - 1e-6):
@@ -68,24 +76,28 @@ def _width_problems(key: str, mode: str, width: float, diameter: float) -> list[
     return []
 
 
-def _place_problems(width: float, offset: float, diameter: float) -> list[tuple[str, str]]:
+def _place_problems(
+    width: float, offset: float, diameter: float, length: UsualUnit
+) -> list[tuple[str, str]]:
     nearest = abs(offset) - 0.5 * width
     if nearest < 0.5 * diameter * (1.0 - 1e-9):
         return []
     text = (
-        f"{offset * 1e3:g} mm from the middle of a workpiece {width * 1e3:g} mm wide the tool of "
-        f"{diameter * 1e3:g} mm does not reach it"
+        f"{length.text(offset, 'g')} from the middle of a workpiece {length.text(width, 'g')} wide "
+        f"the tool of {length.text(diameter, 'g')} does not reach it"
     )
     return [("cut.tool_offset", text)]
 
 
-def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+def engagement_problems_of_draft(
+    data: Mapping[str, Any], length: UsualUnit
+) -> list[tuple[str, str]]:
     """Check the radial depth of a case that has other faults, as far as its values can be read."""
     tool, cut = data.get("tool"), data.get("cut")
     width, diameter = _length(Cut, cut, "radial_depth"), _length(Tool, tool, "diameter")
     if width is None or diameter is None:
         return []
-    return _width_problems("radial_depth", str(cut.get("mode")), width, diameter)
+    return _width_problems("radial_depth", str(cut.get("mode")), width, diameter, length)
 
 
 def _length(section: type, table: Any, key: str) -> float | None:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import no_progress
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
+from chatter.description.usual_units import UsualUnit
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
@@ -77,8 +79,10 @@ def lobes_before_after(
             moved = _largest_change(*(_limits(one.patch(few)) for one in (added.without, repaired)))
     except (InputError, RunError) as error:
         return LobesBeforeAfter({}, cuts, (f"No lobes: {error}.",))
+    length = units_of(measurement.case).length
     sentences = [
-        f"From {before} to {after}, {_change(diagrams[before].limits, diagrams[after].limits)}"
+        f"From {before} to {after}, "
+        f"{_change(diagrams[before].limits, diagrams[after].limits, length)}"
         for before, after in pairwise(diagrams)
     ]
     if added is not None and moved < _SAME:
@@ -138,7 +142,7 @@ def _largest_change(before: LimitCurve, after: LimitCurve) -> float:
     return float(np.max(np.abs(new / old - 1.0)))
 
 
-def _change(before: LimitCurve, after: LimitCurve) -> str:
+def _change(before: LimitCurve, after: LimitCurve, length: UsualUnit) -> str:
     speed, old, new = _finite(before, after)
     if old.size == 0:
         return "no limit lies within the depths searched in both."
@@ -146,9 +150,10 @@ def _change(before: LimitCurve, after: LimitCurve) -> str:
         return "the limits stay as they are."
     ratio = new / old
     most = int(np.argmax(np.abs(np.log(ratio))))
-    lowest = [1e3 * float(values.min()) for values in (old, new)]
+    lowest = [length.factor * float(values.min()) for values in (old, new)]
     return (
-        f"the lowest limit goes from {lowest[0]:.3g} to {lowest[1]:.3g} mm; at half of the speeds "
-        f"the limit is multiplied by {np.median(ratio):.2f} or less, and most changes at "
-        f"{speed[most]:.0f} rpm (from {1e3 * old[most]:.3g} to {1e3 * new[most]:.3g} mm)."
+        f"the lowest limit goes from {lowest[0]:.3g} to {lowest[1]:.3g} {length.name}; at half of "
+        f"the speeds the limit is multiplied by {np.median(ratio):.2f} or less, and most changes "
+        f"at {speed[most]:.0f} rpm (from {length.factor * old[most]:.3g} to "
+        f"{length.text(float(new[most]), '.3g')})."
     )

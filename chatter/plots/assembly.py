@@ -42,7 +42,7 @@ def _draw_receptance(axes: Axes, assembly: Assembly) -> None:
             1e6 * np.abs(assembly.receptance[k]),
             color=colour,
             linewidth=width,
-            label=f"{1e3 * assembly.stick_out[k]:.4g} mm" if k in named else None,
+            label=assembly.units.length.text(assembly.stick_out[k]) if k in named else None,
         )
     axes.set(xlabel="frequency [Hz]", ylabel="receptance at the tool point [um/N]")
     axes.set_title(assembly.file.title or assembly.file.name)
@@ -58,12 +58,15 @@ def _draw_lobes(axes: Axes, assembly: Assembly) -> None:
     lobes = assembly.lobes
     if lobes is None:
         return
+    length = assembly.units.length
     for k, colour, width in _looks(assembly):
         axes.plot(
-            rpm(lobes.spindle_speed), 1e3 * lobes.usable_depth[k], color=colour, linewidth=width
-        )
+            rpm(lobes.spindle_speed), length.factor * lobes.usable_depth[k], color=colour,
+            linewidth=width,
+        )  # fmt: skip
     axes.set(
-        xlabel="spindle speed [rpm]", ylabel="critical depth, at most\nlength of the flutes [mm]"
+        xlabel="spindle speed [rpm]",
+        ylabel=f"critical depth, at most\nlength of the flutes [{length.name}]",
     )
     axes.set_ylim(bottom=0.0)
     style.finish(axes)
@@ -73,16 +76,20 @@ def _draw_removal_rate(axes: Axes, assembly: Assembly) -> None:
     lobes = assembly.lobes
     if lobes is None:
         return
-    best = assembly.best
-    axes.plot(1e3 * assembly.stick_out, 6e7 * lobes.removal_rate, "o-", color=style.BLUE)
+    best, length, removal = assembly.best, assembly.units.length, assembly.units.removal_rate
+    stick_out, rate = length.factor * assembly.stick_out, removal.factor * lobes.removal_rate
+    axes.plot(stick_out, rate, "o-", color=style.BLUE)
     axes.plot(
-        1e3 * assembly.stick_out[best],
-        6e7 * lobes.removal_rate[best],
+        stick_out[best],
+        rate[best],
         "o",
         color=style.RED,
-        label=f"{1e3 * assembly.stick_out[best]:.4g} mm at {rpm(lobes.best_speed[best]):.0f} rpm",
+        label=f"{stick_out[best]:.4g} {length.name} at {rpm(lobes.best_speed[best]):.0f} rpm",
     )
-    axes.set(xlabel="stick-out [mm]", ylabel="highest removal\nrate [cm³/min]")
+    axes.set(
+        xlabel=f"stick-out [{length.name}]",
+        ylabel=f"highest removal\nrate [{removal.name.replace('^3', '³')}]",
+    )
     axes.set_ylim(bottom=0.0)
     style.finish(axes)
     axes.legend(fontsize=8)

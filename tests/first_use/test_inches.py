@@ -7,16 +7,19 @@ The numbers expected are what the case states, and conversions by definition: 25
 import json
 import math
 import re
+from types import SimpleNamespace
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import tomlkit
 
 import chatter
 from chatter.cli.learn import _print_next_cut
 from chatter.description.case import loads
 from chatter.description.errors import InputError
 from chatter.description.unit_system import INCH, METRIC, unit_at, units_of
+from chatter.explain.lobes_before_after import _change
 from chatter.plots.simulation import plot_simulation
 from chatter.plots.stability_diagram import plot_limits
 from chatter.plots.whatif import plot_whatif
@@ -354,3 +357,40 @@ def test_a_programmer_writes_whole_tenths():
     point = OperatingPoint(300.0, 0.08035433 * 0.0254, 0.125 * 0.0254, 5.08e-5, 0.0)
     assert rounded(point, 2.54e-6).axial_depth / 0.0254 == pytest.approx(0.0803, abs=1e-9)
     assert rounded(point, 2.54e-6).radial_depth / 0.0254 == pytest.approx(0.125, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("cut", "said"),
+    [
+        ({"radial_depth": "0.75 in"}, "0.75 in is more than the diameter of the tool, 0.5 in"),
+        ({"mode": "slot"}, '0.125 in is not the diameter, 0.5 in, that mode = "slot" cuts'),
+        (
+            {"mode": None, "radial_depth": None, "workpiece_width": "1 in", "tool_offset": "2 in"},
+            "2 in from the middle of a workpiece 1 in wide the tool of 0.5 in does not reach it",
+        ),
+        ({"feed_per_tooth": None, "feed_rate": "11000 ipm"}, "cut.feed_rate: 1.1e+04 ipm at 2674"),
+    ],
+)
+def test_widths_and_feeds_that_are_refused_are_in_inches(cut, said):
+    """They were in mm where the case had inches."""
+    document = tomlkit.parse(HALF_INCH)
+    for key, value in cut.items():
+        if value is None:
+            del document["cut"][key]
+        else:
+            document["cut"][key] = value
+    with pytest.raises(InputError) as error:
+        loads(tomlkit.dumps(document))
+    assert said in str(error.value)
+    assert " mm" not in str(error.value)
+
+
+def test_lobes_before_and_after_of_explain_are_in_inches():
+    """Limits of 2.54 mm that fall to half are 0.1 in and 0.05 in."""
+    before, after = (
+        SimpleNamespace(spindle_speed=np.array([100.0, 200.0]), critical_depth=depth)
+        for depth in (np.array([2.54e-3, 5.08e-3]), np.array([1.27e-3, 5.08e-3]))
+    )
+    said = _change(before, after, INCH.length)
+    assert "from 0.1 to 0.05 in" in said
+    assert "(from 0.1 to 0.05 in)" in said

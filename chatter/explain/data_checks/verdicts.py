@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
+from chatter.description.unit_system import units_of
 from chatter.description.units import from_rpm, rpm
 from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SAMPLES, SignalFinding
 from chatter.explain.measurement import Measurement, Run
@@ -32,7 +33,7 @@ _OUTSIDE = 3.0
 def wrong_verdicts(measurement: Measurement) -> list[SignalFinding]:
     """Points without sense, speeds in a wrong unit, verdicts turned round."""
     run = measurement.runs[0]
-    found = _senseless(run)
+    found = _senseless(measurement, run)
     bad = found[0].samples if found else np.zeros(run.signals["stable"].size, dtype=bool)
     judged = np.isfinite(run.signals["stable"]) & ~bad
     speeds = run.signals["spindle_speed"][judged]
@@ -48,7 +49,7 @@ def wrong_verdicts(measurement: Measurement) -> list[SignalFinding]:
     return [*found, *_units(measurement, run, speeds), *_turned(measurement, run, judged)]
 
 
-def _senseless(run: Run) -> list[SignalFinding]:
+def _senseless(measurement: Measurement, run: Run) -> list[SignalFinding]:
     speeds, depths = run.signals["spindle_speed"], run.signals["axial_depth"]
     good = (speeds >= _SPEEDS[0]) & (speeds <= _SPEEDS[1])
     good &= (depths >= _DEPTHS[0]) & (depths <= _DEPTHS[1])
@@ -58,7 +59,7 @@ def _senseless(run: Run) -> list[SignalFinding]:
     description = (
         f"{run.name}: {np.sum(~good)} of {good.size} points are out of any sense, the first at "
         f"point {first + 1}: {rpm(speeds[first]):.4g} rpm, "
-        f"{depths[first] * 1e3:.4g} mm"
+        f"{units_of(measurement.case).length.text(depths[first])}"
     )
     severity = SAMPLES if good.mean() > 0.7 else RUN
     return [SignalFinding(severity, run.name, "stable", description, ~good)]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.unit_system import units_of
 from chatter.description.units import rpm
 from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import has_power
@@ -222,9 +223,10 @@ class Stability(Kind):
         """Verdicts at single points over the speeds and depths that were tested."""
         speeds, depths, _ = self.cuts(measurement)
         trials = []
+        length = units_of(measurement.case).length
         for speed in np.geomspace(speeds.min(), speeds.max(), _POINTS):
             for depth in np.geomspace(depths.min(), depths.max(), _POINTS):
-                words = f"a cut at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm"
+                words = f"a cut at {rpm(speed):.0f} rpm and {length.text(depth, '.3g')}"
                 point = {"spindle_speed": np.array([speed]), "axial_depth": np.array([depth])}
                 run = Run("trial", {}, point, record="stable")
                 trials.append(Trial(words, run, {"stable": _NOISE_OF_VERDICT}))

@@ -340,3 +340,20 @@ def test_shipped_library_has_a_dozen_of_entries_with_sources():
     assert len(shipped.tool) + len(shipped.holder) >= 12
     every = [*shipped.tool.values(), *shipped.holder.values(), *shipped.spindle.values()]
     assert all(entry.source for entry in every)
+
+
+def test_words_and_picture_are_in_inches_where_the_case_is(tmp_path):
+    """They were in mm; the files keep their units."""
+    case = CASE.replace('"12 mm"', '"0.5 in"').replace('"0.06 mm"', '"0.0024 ipt"')
+    (tmp_path / "case.toml").write_text(case.replace('"2 mm"', '"0.08 in"'), encoding="utf-8")
+    path = tmp_path / "assembly.toml"
+    path.write_text('case = "case.toml"\n' + ASSEMBLY, encoding="utf-8")
+    result = run("assemble", path, "--out", tmp_path / "out")
+    best = json.loads((tmp_path / "out" / "summary.json").read_text())["best_stick_out_mm"]
+    assert f"best stick-out {best / 25.4:.4g} in by removal rate" in result.stdout
+    for heading in ("stick-out [in]", "lowest limit [in]", "removal [in^3/min]"):
+        assert heading in result.stdout
+    assert "1.181" in result.stdout  # 30 mm
+    drawn = [axes.get_ylabel() for axes in plot_assembly(chatter.assemble(path)).axes]
+    assert not any("[mm]" in one for one in drawn)
+    assert any("[in]" in one for one in drawn)
