@@ -30,9 +30,10 @@ class PeriodFit(NamedTuple):
     """How a whole number of variations is fitted into a whole number of tool periods."""
 
     tuning: float = 1e-3  # share by which the frequency may be moved
-    least_periods: int = 0  # tool periods in a period at least, where it is one of the two between
-    # which the true ratio lies; 0 for the nearest ratio within the tuning
-    beyond: int = 0  # 1 for the one of the two with more of them
+    least_periods: int = 0  # tool periods in a period at least, where its ratio is one of the two
+    # between which the true one lies; 0 for the nearest ratio within the tuning
+    tried: int = 1  # numbers of variations in such a period, from the least on
+    beyond: int = 0  # 1 for the one of the two with more tool periods
 
 
 class SpindleRotation(NamedTuple):
@@ -61,31 +62,34 @@ def _common_divisor(a, b):
 
 @njit(**INNER_KERNEL)
 def _beside_true_ratio(variation, fit, speed, pattern, per_cycle):
-    """Rotation with fewer or more tool periods in a period than the true ratio asks for.
+    """Rotation with fewer or more tool periods in a variation than the true ratio.
 
-    Their number has no divisor in common with that of the variations: the teeth then meet the
-    variation at as many phases as there are variations. At a few phases alone, as with a whole
-    number of tool periods in a variation, growth is not that of a ratio next to it.
+    Of all ratios with as many variations in a period as are tried it is the nearest one. Tool
+    periods and variations have no divisor in common: the teeth then meet the variation at as many
+    phases as there are variations. At a few phases alone, as with a whole number of tool periods in
+    a variation, growth is not that of a ratio next to it.
     """
     least = fit.least_periods
-    cycles = math.ceil(least / per_cycle)
+    fewest = math.ceil(least / per_cycle)
     if per_cycle < _FEW_SHARES * least:
-        cycles = max(2, cycles)
-    true = cycles * per_cycle
-    patterns = int(max(1.0, np.round(true)))
-    if abs(true - patterns) < _SAME_RATIO * true:
-        # it fits as it is
-        divisor = _common_divisor(patterns, cycles)
-        patterns, cycles = patterns // divisor, cycles // divisor
-    else:
-        # in steps, so that many speeds have like periods
-        step = max(1, math.floor(true / least))
-        while _common_divisor(step, cycles) > 1:
-            step -= 1
-        patterns = step * (math.floor(true / step) + fit.beyond)
-        while _common_divisor(patterns, cycles) > 1 and patterns > 1:
-            patterns += step if fit.beyond == 1 else -step
-        patterns = max(1, patterns)
+        fewest = max(2, fewest)
+    side = 1.0 if fit.beyond == 1 else -1.0
+    patterns, cycles, nearest = 0, fewest, np.inf
+    for tried in range(fewest, fewest + fit.tried):
+        true = tried * per_cycle
+        whole = int(max(1.0, np.round(true)))
+        if abs(true - whole) < _SAME_RATIO * true:
+            # it fits as it is
+            divisor = _common_divisor(whole, tried)
+            patterns, cycles = whole // divisor, tried // divisor
+            break
+        whole = int(math.ceil(true) if fit.beyond == 1 else math.floor(true))
+        while _common_divisor(whole, tried) > 1 and whole > 1:
+            whole += int(side)
+        whole = max(1, whole)
+        apart = side * (whole / tried - per_cycle)
+        if patterns == 0 or apart < nearest:
+            patterns, cycles, nearest = whole, tried, apart
     frequency = cycles * speed / (patterns * pattern)
     return SpindleRotation(
         speed, variation.amplitude, frequency, variation.triangle, patterns, cycles

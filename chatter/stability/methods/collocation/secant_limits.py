@@ -72,6 +72,8 @@ def limits_by_secants(
     found = np.full(depth.size, np.nan)
     k = np.flatnonzero(np.isfinite(slope) & (slope != 0.0))
     now, of_now, steepness = depth[k], growth_rate(points[k], depth[k]), slope[k]
+    # the slope is that of the like problem
+    k, now, of_now, steepness = _settled(found, k, now, of_now, steepness, _STEP_ERROR * tolerance)
     for _ in range(_MOST_STEPS):
         following = now - of_now / steepness
         kept = np.abs(following - depth[k]) <= _REACH * depth[k]
@@ -86,11 +88,18 @@ def limits_by_secants(
         ratio = secant / steepness
         like = (ratio > 1.0 / _SLOPE_RATIO) & (ratio < _SLOPE_RATIO)
         k, now, of_now, steepness = _of(like, k, following, value, secant)
-        left = of_now / steepness
-        done = _STEP_ERROR * np.abs(left) <= tolerance * now
-        found[k[done]] = (now - left)[done]
-        k, now, of_now, steepness = _of(~done, k, now, of_now, steepness)
+        k, now, of_now, steepness = _settled(found, k, now, of_now, steepness, tolerance)
     return found
+
+
+def _settled(
+    found: Array, k: IntegerArray, now: Array, of_now: Array, steepness: Array, tolerance: float
+) -> tuple[Array, ...]:
+    """Enter what a last step finds where it is short; returns the others."""
+    left = of_now / steepness
+    done = _STEP_ERROR * np.abs(left) <= tolerance * now
+    found[k[done]] = (now - left)[done]
+    return _of(~done, k, now, of_now, steepness)
 
 
 def _of(kept: BooleanArray, index: IntegerArray, *values: Array) -> tuple[Array, ...]:

@@ -23,12 +23,12 @@ def varies(cut: ElementCut) -> bool:
     return cut.arrays.variation.amplitude > 0.0
 
 
-def beside(cut: ElementCut, least_periods: int) -> Pair:
-    """The cut with periods of fewer and of more tool periods than the true ratio asks for.
+def beside(cut: ElementCut, least_periods: int, tried: int) -> Pair:
+    """The cut with fewer and with more tool periods in a variation than the true ratio.
 
-    A period has `least_periods` tool periods at the least.
+    A period has `least_periods` tool periods at the least; so many numbers of variations are tried.
     """
-    fit = cut.arrays.fit._replace(least_periods=least_periods)
+    fit = cut.arrays.fit._replace(least_periods=least_periods, tried=tried)
     return cut.with_fit(fit._replace(beyond=0)), cut.with_fit(fit._replace(beyond=1))
 
 
