@@ -131,8 +131,8 @@ def compare(
         return Comparison(usable.measurement, (), None, usable.findings)
     kind = KINDS[usable.measurement.kind]
     prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
-    # behind the same filter as `explain` has it
-    prepared = kind.with_filter_by(prepared, prepared.case)
+    # the records as `explain` has them
+    prepared = kind.with_records_by(prepared, prepared.case)
     signature = signature_of(prepared, predictions, prepared.case)
     parts = {(part.run.name, part.channel): part for part in signature.residual.parts}
     errors = []

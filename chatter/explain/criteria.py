@@ -31,6 +31,9 @@ LEAST_EVIDENCE, CERTAIN_EVIDENCE = 6.0, 10.0
 LEAST_SHARE_IN_PART = 0.15
 #: the same of FRFs, where a mode stood for a third of what a delay of the sensor does
 LEAST_SHARE_IN_PART_OF_FRFS = 0.4
+#: the same of all effects together where declared values leave their tolerances beside them: what
+#: draws a value makes an effect as well; those of the unlisted took away three quarters at the most
+LEAST_SHARE_OUT_OF_TOLERANCE = 0.9
 #: sum of squares of holdout runs over that without an effect, from which on it is not one
 MOST_LOST = 1.02
 #: level of the signed-rank test of the runs that gain by such an effect against those that lose

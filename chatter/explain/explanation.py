@@ -392,8 +392,8 @@ def explain(
         prepared, found, slow = _searched(prepared, predictions, progress)
         verdict = verdict_of(found)
         terms = None if verdict in COMPLETE else _learnt(found, verdict, progress)
-    # errors, as the search, behind the filter that the records have
-    shown = kind.with_filter_by(prepared, found.problem.case(found.of_fitted.by_name))
+    # errors, as the search, of the records as the case found tells them
+    shown = kind.with_records_by(prepared, found.problem.case(found.of_fitted.by_name))
     findings = (*usable.findings, *slow)
     return Explanation(shown, found, verdict, predictions, findings, terms)
 

@@ -105,7 +105,7 @@ class Axis(Kind):
             begun += float(run.signals["time"][-1] - run.signals["time"][0])
         return measurement.with_runs(runs).in_parts(_PARTS)
 
-    def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
+    def refined(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement whose samples count as far as the force of a case is certain."""
         runs = []
         for run in measurement.runs:

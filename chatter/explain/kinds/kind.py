@@ -195,12 +195,16 @@ class Kind(ABC):
         del case, runs
         return ()
 
-    def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
-        """Return the measurement with weights by a case that was found; unchanged by default."""
+    def refined(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement as the last fits take it, by a case found; unchanged by default.
+
+        Its samples may have other weights, or be predicted more exactly.
+        """
+        del case
         return measurement
 
-    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
-        """Return the measurement with the filter of its records by a case; unchanged by default."""
+    def with_records_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with its records as a case tells them; unchanged by default."""
         del case
         return measurement
 

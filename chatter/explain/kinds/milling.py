@@ -24,11 +24,11 @@ from chatter.explain.kinds.axial_force import (
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.parameters import Parameter, with_priors, within_reach
-from chatter.explain.records.anti_alias_filter import with_filter_by
 from chatter.explain.records.beginning import beginning_of
 from chatter.explain.records.description import ACCELERATION, REST
 from chatter.explain.records.from_rest import from_rest
 from chatter.explain.records.recognition import from_rest_records, settled_records
+from chatter.explain.records.records_by_case import settled_further, with_records_by
 from chatter.explain.records.settling import without_too_slow
 from chatter.explain.records.steady_record import SteadyRecord
 from chatter.explain.residuals.by_channel import by_channel, over_time
@@ -141,9 +141,13 @@ class Milling(Kind):
             return run.record.predicted(case)
         return from_rest(case, run)
 
-    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
-        """Return the measurement with the order of its anti-alias filter by a case."""
-        return with_filter_by(measurement, case)
+    def with_records_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with its settled records as a case tells them."""
+        return with_records_by(measurement, case)
+
+    def refined(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with settled records predicted by more revolutions."""
+        return settled_further(with_records_by(measurement, case))
 
     def without_too_slow(
         self, measurement: Measurement, case: Case
@@ -157,9 +161,11 @@ class Milling(Kind):
         return 2.0 * math.pi / record.recorded.speed if isinstance(record, SteadyRecord) else None
 
     def predicted_as(self, run: Run) -> str:
-        """Order of the filter of a settled record."""
+        """Revolutions and filter by which a settled record is predicted."""
         record = run.record
-        return f"filter {record.filter_order}" if isinstance(record, SteadyRecord) else ""
+        if not isinstance(record, SteadyRecord):
+            return ""
+        return f"{record.revolutions} revolutions, filter {record.filter_order}"
 
     def known_noise(self, run: Run) -> Mapping[str, float]:
         """Standard deviation of channels whose noise the records tell."""

@@ -118,13 +118,13 @@ class SetUp(Kind):
         cheap = [run for run in runs if run.kind == FrequencyResponse.name]
         return cheap if case.on_machine and len(cheap) < len(runs) else ()
 
-    def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
-        """Return the measurement with the weights of its kinds by a case that was found."""
-        return self._by_kind(measurement, lambda kind, part: kind.reweighted(part, case))
+    def refined(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement as its kinds refine it by a case that was found."""
+        return self._by_kind(measurement, lambda kind, part: kind.refined(part, case))
 
-    def with_filter_by(self, measurement: Measurement, case: Case) -> Measurement:
-        """Return the measurement with the filters of the records of its kinds by a case."""
-        return self._by_kind(measurement, lambda kind, part: kind.with_filter_by(part, case))
+    def with_records_by(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with the records of its kinds as a case tells them."""
+        return self._by_kind(measurement, lambda kind, part: kind.with_records_by(part, case))
 
     def predicted_as(self, run: Run) -> str:
         """What a prediction depends on, as the kind of the run has it."""

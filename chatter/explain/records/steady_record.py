@@ -38,9 +38,13 @@ class SteadyRecord:
         """Whether it is known which tooth is where: by a tacho or a measured angle."""
         return self.recorded.angle is not None or self.recorded.expected is not None
 
+    def with_revolutions(self, revolutions: int) -> "SteadyRecord":
+        """Same record, predicted by another number of revolutions from rest."""
+        return self if revolutions == self.revolutions else replace(self, revolutions=revolutions)
+
     def with_filter_of(self, order: int) -> "SteadyRecord":
         """Same record behind an anti-alias filter of another order."""
-        return replace(self, filter_order=order)
+        return self if order == self.filter_order else replace(self, filter_order=order)
 
     def misfits(self, case: Case, orders: Sequence[int]) -> dict[int, float]:
         """Sum of squares of what differs, by a case with the overrides of the run.

@@ -40,7 +40,7 @@ def fit_from_elsewhere(problem: Problem, now: Fit, split: Split) -> Fit:
         return now
     level = now.cost / max(now.residuals.size, 1)
     if level < _LARGE:
-        return _from_declared(problem, now, split)
+        return fit_from_declared(problem, now, split)
     held = _with_noise(problem, np.sqrt(level))
     own = held.fit(split.fitted, now.by_name)
     best = min((*_followed(held, own, split), own), key=_objective)
@@ -51,10 +51,10 @@ def fit_from_elsewhere(problem: Problem, now: Fit, split: Split) -> Fit:
     return problem.fit(split.fitted, best.by_name)
 
 
-def _from_declared(problem: Problem, now: Fit, split: Split) -> Fit:
+def fit_from_declared(problem: Problem, now: Fit, split: Split) -> Fit:
     """Fit with declared values put back that are out of tolerance, where that is better.
 
-    They were drawn there when the effects were not in the case.
+    They were drawn there when the effects were not in the case, or a flat minimum held them.
     """
     pulls = problem.declared_pulls(now)
     if all(abs(pull) <= OUT_OF_TOLERANCE for pull in pulls.values()):

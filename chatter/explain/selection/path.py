@@ -103,13 +103,13 @@ def gone_on(begin: Path, stage: Stage, split: Split, progress: Progress) -> Path
     return Path(stages, problem, now)
 
 
-def filtered(path: Path, split: Split) -> tuple[Path, Split]:
-    """Path with the filter of the records as its case tells it, and its runs; itself if as it is.
+def with_records_of_case(path: Path, split: Split) -> tuple[Path, Split]:
+    """Path with the settled records as its case tells them, and its runs; itself if as they are.
 
     Effects stay, and their stages as they were found.
     """
     problem, values = path.problem, path.now.by_name
-    measurement = problem.kind.with_filter_by(problem.measurement, problem.case(values))
+    measurement = problem.kind.with_records_by(problem.measurement, problem.case(values))
     if measurement is problem.measurement:
         return path, split
     split = split_runs(measurement)

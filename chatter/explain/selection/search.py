@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from chatter.explain.criteria import HOLDOUT_AT_NOISE, MOST_EFFECTS, NO_RESIDUAL, OUT_OF_TOLERANCE
+from chatter.explain.criteria import (
+    HOLDOUT_AT_NOISE,
+    LEAST_SHARE_OUT_OF_TOLERANCE,
+    MOST_EFFECTS,
+    NO_RESIDUAL,
+    OUT_OF_TOLERANCE,
+)
 from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
@@ -24,15 +30,15 @@ from chatter.explain.selection.established import (
     reaches_nothing,
     stages_of_kept_effects,
 )
-from chatter.explain.selection.other_starts import fit_from_elsewhere
+from chatter.explain.selection.other_starts import fit_from_declared, fit_from_elsewhere
 from chatter.explain.selection.path import (
     Path,
     best_path,
-    filtered,
     gone_on,
     in_other_forms,
     instead_of_two,
     tried_again,
+    with_records_of_case,
 )
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
@@ -87,11 +93,25 @@ class Search:
 
     @property
     def is_certain(self) -> bool:
-        """Whether every effect accepted is beyond doubt, whatever is left."""
+        """Whether every effect accepted is beyond doubt, whatever is left.
+
+        None is where they leave a good part of the misfit, and declared values their tolerances.
+        """
+        if self.out_of_tolerance and self.share_removed < LEAST_SHARE_OUT_OF_TOLERANCE:
+            return False
         return all(
             is_established(stage, self.problem.without_effect(stage.best.effect), self.split)
             for stage in self.accepted
         )
+
+    @property
+    def share_removed(self) -> float:
+        """Share of the misfit above the noise that the effects accepted take away together."""
+        before, after = (
+            float(one.residuals @ one.residuals) - one.residuals.size
+            for one in (self.base, self.final)
+        )
+        return 1.0 - after / max(before, 1e-300)
 
     @property
     def out_of_tolerance(self) -> Mapping[str, float]:
@@ -127,14 +147,14 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     now = problem.fit(split.fitted, begin)
     problem = problem.with_noise_beside(now.by_name)
     now = problem.fit(split.fitted, now.by_name)
-    path, split = filtered(Path([], problem, now), split)
+    path, split = with_records_of_case(Path([], problem, now), split)
     problem, base_values = path.problem, path.now.by_name
     first = stage_of(problem, path.now, split, progress, 0)
     path = best_path(path, first, split, progress)
     if len(path.stages) > 1:
         progress("trying again the effects added first", 0.85)
         path = tried_again(path, split)
-    path, split = _gone_on_filtered(path, split, progress)
+    path, split = _gone_on_with_records(path, split, progress)
     return _concluded(measurement, path, split, first, base_values, progress)
 
 
@@ -186,23 +206,24 @@ def _concluded(
         path, helping = established_alone(path, split)
         path = path._replace(now=fit_from_elsewhere(path.problem, path.now, split))
         final = _of_what_is_left(path)
-    elif path.stages and reaches_nothing(path, final) is not None:
-        path, final = _without_nothing(path, final, split)
+    elif path.stages:
+        path, final = _without_nothing(*_from_declared(path, final, split), split)
     path = stages_of_kept_effects(path, split)
-    shown = path.problem.kind.with_filter_by(measurement, path.problem.case(path.now.by_name))
+    shown = path.problem.kind.with_records_by(measurement, path.problem.case(path.now.by_name))
     base = replace(path.problem, effects=()).final_fit(shown.runs, base_values)
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base
     )
 
 
-def _gone_on_filtered(path: Path, split: Split, progress: Progress) -> tuple[Path, Split]:
-    """Path that was gone on with where the case found tells another filter of the records.
+def _gone_on_with_records(path: Path, split: Split, progress: Progress) -> tuple[Path, Split]:
+    """Path that was gone on with where the case found tells its settled records otherwise.
 
-    What was chosen behind the wrong filter is asked for again, and what that hid is sought.
+    What was chosen behind the wrong filter, or by a cut that had not settled, is asked for again,
+    and what that hid is sought.
     """
-    progress("looking at the filter of the records", 0.855)
-    found, split = filtered(path, split)
+    progress("looking at the settled records again", 0.855)
+    found, split = with_records_of_case(path, split)
     if found is path or not found.stages:
         return found, split
     found = tried_again(found, split)
@@ -223,12 +244,12 @@ def _nearest_start(problem: Problem, split: Split) -> dict[str, float]:
 
 
 def _to_all_runs(path: Path, split: Split, progress: Progress) -> tuple[Path, Split, Fit]:
-    """Path with samples weighted by the case that was found, and the fit to all runs."""
+    """Path with the measurement refined by the case that was found, and the fit to all runs."""
     progress("fitting all runs", 0.86)
     stages, problem, now = path
     measurement = problem.measurement
     if stages:
-        measurement = problem.kind.reweighted(measurement, problem.case(now.by_name))
+        measurement = problem.kind.refined(measurement, problem.case(now.by_name))
     if measurement is not problem.measurement:
         split = split_runs(measurement)
         problem = replace(problem, measurement=measurement)
@@ -253,6 +274,15 @@ def _of_what_is_left(path: Path) -> Fit:
     }
     final = _of_all_runs(Path(path.stages, replace(problem, noise=noise), path.now))
     return replace(final, residuals=problem.residuals(final.by_name, runs))
+
+
+def _from_declared(path: Path, final: Fit, split: Split) -> tuple[Path, Fit]:
+    """Path and its fit to all runs, from declared values where that is better."""
+    now = fit_from_declared(path.problem, path.now, split)
+    if now is path.now:
+        return path, final
+    path = path._replace(now=now)
+    return path, _of_all_runs(path)
 
 
 def _without_nothing(path: Path, final: Fit, split: Split) -> tuple[Path, Fit]:

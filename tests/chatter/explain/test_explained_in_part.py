@@ -98,6 +98,20 @@ def test_values_far_from_declared_do_not_explain():
     assert one["refitted"] == pytest.approx(12.0, rel=0.05)
 
 
+def test_friction_beside_a_ringing_is_not_certain_where_a_declared_value_is_wrong():
+    """Twice the viscous friction declared: what draws that value may make the friction as well."""
+
+    def force(rng, time, position, velocity):
+        return 12.0 * np.tanh(velocity / 2e-5) + VISCOUS * velocity + ringing(rng, time)
+
+    result = explain(axis_of(force))
+    summary = result.summary()
+    assert [one["path"] for one in summary["out_of_tolerance"]] == ["axis.viscous_friction"]
+    assert summary["verdict"] == "unexplained"
+    assert summary["effects"] == []
+    assert [one["name"] for one in summary["partial"]] == ["coulomb_friction"]
+
+
 def test_what_only_damps_in_the_cut_is_no_contact(tmp_path):
     """A loss that is the same at all frequencies: a damper without a spring came near it."""
     write_set(tmp_path, 3006, np.random.default_rng([2029, 6]), "friction_like_damping")

@@ -160,7 +160,7 @@ def test_the_order_of_the_filter_is_told_by_all_the_records(case, order, tmp_pat
     record = RecordDescription("cut", "unknown", 0.005)
     made = measurement(case, behind_a_filter(order), tmp_path, as_in_the_case, record)
     usable = checked(made).measurement
-    found = KINDS["milling"].with_filter_by(usable, case)
+    found = KINDS["milling"].with_records_by(usable, case)
     assert {run.record.filter_order for run in found.runs} == {order}
     assert (found is usable) == (order == 4)
     for one in found.runs:
@@ -174,7 +174,7 @@ def test_the_same_run_behind_another_filter_is_predicted_anew(case, tmp_path):
     usable = checked(made).measurement
     predictions = Predictions(KINDS["milling"])
     behind_fourth = {run.name: predictions.of(case, run) for run in usable.runs}
-    found = predictions.kind.with_filter_by(usable, case)
+    found = predictions.kind.with_records_by(usable, case)
     for one in found.runs:
         fourth, eighth = behind_fourth[one.name], predictions.of(case, one)
         missed = [
