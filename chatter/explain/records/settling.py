@@ -15,6 +15,9 @@ from chatter.explain.records.steady_record import SteadyRecord
 
 #: change, over the signal, that is left when a record ends, from which it need not have settled
 _LEFT = 0.03
+#: revolutions from rest after which a run is near its limit that has so large a change left: near
+#: it, cuts that have settled can be two, the one from rest and the one that was entered slowly
+_NEAR, _LEFT_NEAR = 20, 0.1
 
 
 class Settling(NamedTuple):
@@ -25,26 +28,32 @@ class Settling(NamedTuple):
     revolutions: int  # of the cut in the record
 
     @property
-    def is_too_slow(self) -> bool:
-        """Whether a transient from rest would outlast the record."""
+    def doubt(self) -> str:
+        """Why the record need not show the settled cut from rest; empty where it does.
+
+        A transient from rest would outlast the record, or dies out so slowly that another settled
+        cut may be beside that from rest.
+        """
         longest = REVOLUTIONS[-1]
-        return self.revolutions < longest and change_left(self.case, self.revolutions) > _LEFT
+        if self.revolutions < longest and change_left(self.case, self.revolutions) > _LEFT:
+            return (
+                f"does not settle within the {self.revolutions} revolutions of the record: whether "
+                "it had settled cannot be told"
+            )
+        if change_left(self.case, _NEAR) > _LEFT_NEAR:
+            return "may settle otherwise after another entry: which cut it shows cannot be told"
+        return ""
 
 
 def too_slow(runs: Sequence[Settling], model: str) -> list[SignalFinding]:
     """Runs that do not settle within their records by a model, unless these are half of all."""
-    slow = [one for one in runs if one.is_too_slow]
-    if 2 * len(slow) >= len(runs):
+    doubts = {one.name: doubt for one in runs if (doubt := one.doubt)}
+    if 2 * len(doubts) >= len(runs):
         return []
+    near = f"by the {model} case the cut is so near to its stability limit that it"
     return [
-        SignalFinding(
-            RUN, one.name, "",
-            f"{one.name}: by the {model} case the cut is so near to its stability limit that it "
-            f"does not settle within the {one.revolutions} revolutions of the record: whether it "
-            "had settled cannot be told",
-        )
-        for one in slow
-    ]  # fmt: skip
+        SignalFinding(RUN, name, "", f"{name}: {near} {doubt}") for name, doubt in doubts.items()
+    ]
 
 
 def without_too_slow(
