@@ -28,7 +28,7 @@ class Settling(NamedTuple):
     revolutions: int  # of the cut in the record
 
     @property
-    def doubt(self) -> str:
+    def reason(self) -> str:
         """Why the record need not show the settled cut from rest; empty where it does.
 
         A transient from rest would outlast the record, or dies out so slowly that another settled
@@ -47,12 +47,12 @@ class Settling(NamedTuple):
 
 def too_slow(runs: Sequence[Settling], model: str) -> list[SignalFinding]:
     """Runs that do not settle within their records by a model, unless these are half of all."""
-    doubts = {one.name: doubt for one in runs if (doubt := one.doubt)}
-    if 2 * len(doubts) >= len(runs):
+    reasons = {one.name: reason for one in runs if (reason := one.reason)}
+    if 2 * len(reasons) >= len(runs):
         return []
     near = f"by the {model} case the cut is so near to its stability limit that it"
     return [
-        SignalFinding(RUN, name, "", f"{name}: {near} {doubt}") for name, doubt in doubts.items()
+        SignalFinding(RUN, name, "", f"{name}: {near} {reason}") for name, reason in reasons.items()
     ]
 
 
