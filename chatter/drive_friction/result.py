@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +18,8 @@ from chatter.drive_friction.friction_laws import FitSettings, FittedFriction
 from chatter.drive_friction.limited_effort import UNEXPLAINED, FlatTops, unexplained
 from chatter.io.presentation import presentation
 from chatter.io.result_files import NotebookResult, as_json, finite_or_none, write_results
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.identification.steady_state import SteadyPoint, constant_speed_points
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,6 +44,8 @@ _IN_FILES = {
 }
 #: condition number of the linear fit from which its terms resemble each other
 _ALIKE = 20.0
+#: s at constant speed that make a point of the friction curve, after what the low-pass blurs
+_CONSTANT = 0.1
 #: share of the variance of a derived acceleration that is noise, worth telling
 _NOISY = 0.02
 
@@ -93,6 +99,36 @@ class DriveFriction(NotebookResult):
         """Rms of what the kept law leaves of the effort of moving samples, over that of it."""
         return unexplained(self.kept, self.given.records, self.settings)
 
+    @cached_property
+    def constant_speeds(self) -> tuple[SteadyPoint, ...]:
+        """Mean effort of the stretches at constant speed, which no law has a part in."""
+        found: list[SteadyPoint] = []
+        low_pass = self.settings.low_pass
+        for record in self.given.records:
+            if record.excluded is not None:
+                continue
+            with contextlib.suppress(MeasurementError):  # it has no such stretch
+                found += constant_speed_points(
+                    record,
+                    low_pass=low_pass,
+                    minimum_duration=_CONSTANT,
+                    settling=low_pass.settling,
+                    minimum_speed=self.settings.minimum_speed,
+                )
+        return tuple(found)
+
+    def _at_constant_speed(self) -> list[dict[str, float]]:
+        """Friction at constant speed as it was measured, and by the law kept."""
+        return [
+            {
+                "velocity": one.velocity,
+                "friction": one.effort - self.kept.offset,
+                "standard_error": one.standard_error,
+                "by_law": float(self.kept.law.steady_state_force(np.array([one.velocity]))[0]),
+            }
+            for one in self.constant_speeds
+        ]
+
     def summary(self) -> dict[str, Any]:
         """Content of friction.json."""
         return {
@@ -128,6 +164,7 @@ class DriveFriction(NotebookResult):
                 }
                 for cutoff, fit in self.other_cutoffs.items()
             ],
+            "constant_speed": self._at_constant_speed(),
             "notes": self.notes,
         }
 

@@ -57,6 +57,13 @@ def _draw_velocity(panel: Axes, found: DriveFriction) -> None:
         ends += [record.velocity.min(), record.velocity.max()]
     velocity = np.linspace(min(ends), max(ends), _POINTS)
     panel.plot(velocity, found.kept.law.steady_state_force(velocity), color=style.RED, label="law")
+    if points := found.constant_speeds:
+        panel.errorbar(
+            [one.velocity for one in points],
+            [one.effort - found.kept.offset for one in points],
+            yerr=[2.0 * one.standard_error for one in points],
+            fmt="s", ms=4.0, color="black", mfc="none", lw=0.8, label="means at constant speed",
+        )  # fmt: skip
     panel.set(xlabel=f"velocity [{speed}]", ylabel=f"friction [{_unit(found)}]")
     panel.legend(fontsize=8.0, frameon=False)
 

@@ -11,6 +11,5 @@ first_guess    starting values of a friction law from the linear fit and a rever
 law_fit        nonlinear least squares over named parameters
 dynamic_fit    a whole law fitted along the measured motion
 steady_state   friction curve of moves at constant speed
-shares         rotational and translational shares of friction about the motor
 ============== ======================================================================
 """

@@ -1,23 +1,18 @@
-"""Friction curve from moves at constant speed, and its shares about the motor and along the slide.
+"""Friction curve from moves at constant speed.
 
 As in "Time domain coupled simulation of machine tool dynamics and cutting forces considering the
 influences of nonlinear friction characteristics and process damping", section 3: the mean torque of
-each constant-speed move is set against its speed, and rotational and translational friction share
-the torque about the motor shaft, there equally.
+each constant-speed move is set against its speed.
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.frf.container import MeasurementError
-from dynamics.friction.identification.dynamic_fit import FrictionLaw
 from dynamics.friction.identification.filtering import LowPass
-from dynamics.friction.identification.intervals import Estimate, correlation_length
-from dynamics.friction.identification.law_fit import law_parameters, search
+from dynamics.friction.identification.intervals import correlation_length
 from dynamics.friction.identification.record import DriveRecord
 
 
@@ -88,63 +83,4 @@ def _mean(record: DriveRecord, segment: slice) -> SteadyPoint:
         error,
         float(record.time[segment][0]),
         float(record.time[segment][-1]),
-    )
-
-
-@dataclass(frozen=True)
-class SteadyFit:
-    """Result of `fit_steady_state`."""
-
-    law: FrictionLaw  # with the fitted values
-    offset: float  # effort that does not turn with the motion (weight, preload), N or N m
-    estimates: dict[str, Estimate]  # fitted parameters with 95 % intervals
-    residual: float  # root mean square over the points, N or N m
-    unsupported: tuple[str, ...]  # parameters that the points do not decide
-
-
-def fit_steady_state(
-    points: Sequence[SteadyPoint],
-    guess: FrictionLaw,
-    free: Sequence[str],
-    *,
-    starts: int = 8,
-    seed: int = 0,
-) -> SteadyFit:
-    """Fit the sliding part of a friction law to mean efforts at constant speeds.
-
-    Points are more than there are parameters; each counts alike. Free are parameters of the law,
-    and ``"offset"``, which needs moves in both directions; those that are not, presliding above
-    all, stay as in the guess. The seed is that of the starts of the search after the first.
-    MeasurementError if there are too few points, or only one direction for an offset; ValueError if
-    a parameter is unknown or its guess is out of range.
-    """
-    of_law = [name for name in free if name != "offset"]
-    first = law_parameters(guess, of_law)
-    velocity = np.array([point.velocity for point in points])
-    effort = np.array([point.effort for point in points])
-    if len(points) <= len(free):
-        raise MeasurementError(
-            f"constant-speed moves: {len(points)} points for {len(free)} parameters; more points "
-            "than parameters are needed"
-        )
-    signed = {}
-    if "offset" in free:
-        if not (np.any(velocity > 0.0) and np.any(velocity < 0.0)):
-            raise MeasurementError("constant-speed moves: an offset needs moves in both directions")
-        first["offset"] = 0.0
-        signed["offset"] = float(np.max(np.abs(effort)))
-
-    def law(values: dict[str, float]) -> FrictionLaw:
-        return replace(guess, **{name: values[name] for name in of_law})
-
-    def residual(values: dict[str, float]) -> NDArray[np.float64]:
-        return law(values).steady_state_force(velocity) + values.get("offset", 0.0) - effort
-
-    found = search(residual, first, signed=signed, starts=starts, seed=seed, fewest=1)
-    return SteadyFit(
-        law(found.values),
-        found.values.get("offset", 0.0),
-        found.estimates,
-        float(np.sqrt(np.mean(found.residual**2))),
-        found.unsupported,
     )

@@ -198,3 +198,24 @@ def test_moves_of_another_simulation(name, law, inertia, viscous, coulomb):
     assert kept.estimates["coulomb"].value == pytest.approx(coulomb, rel=0.015)
     if law == "lugre":
         assert kept.estimates["bristle_stiffness"].value == pytest.approx(2.74065e6, rel=0.02)
+
+
+def test_means_at_constant_speed_are_points_of_the_friction_curve():
+    """Trapezoidal moves; the force of the law at constant speed is 60 N + 400 N s/m times it."""
+    law, ramp, duration = TRUTHS["coulomb"], 0.1, 0.6
+    moves = []
+    for speed in (0.02, -0.02, 0.15, -0.15):
+        time = np.arange(0.0, duration, STEP)
+        rise = np.clip(np.minimum(time, duration - time) / ramp, 0.0, 1.0)
+        velocity = speed * rise
+        position = np.concatenate([[0.0], np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * STEP)])
+        force = MASS * np.gradient(velocity, STEP) + friction_along(law, position, STEP) + OFFSET
+        force = force + 2.0 * np.random.default_rng(5).standard_normal(time.size)
+        moves.append(DriveRecord(time, position, velocity, force, name=f"{speed:g} m/s"))
+    points = chatter.friction(DriveRecords(tuple(moves), rotary=False)).summary()["constant_speed"]
+    assert [one["velocity"] for one in points] == pytest.approx(
+        [0.02, -0.02, 0.15, -0.15], rel=0.01
+    )
+    wanted = [68.0, -68.0, 120.0, -120.0]
+    assert [one["friction"] for one in points] == pytest.approx(wanted, abs=1.0)
+    assert [one["by_law"] for one in points] == pytest.approx(wanted, abs=1.0)
