@@ -10,11 +10,12 @@ from typing import NamedTuple
 from chatter.description.case import Case
 from chatter.explain.data_checks.finding import RUN, SignalFinding
 from chatter.explain.measurement import Measurement
-from chatter.explain.records.steady_cut import REVOLUTIONS, change_left
+from chatter.explain.records.steady_cut import change_left
 from chatter.explain.records.steady_record import SteadyRecord
 
-#: change, over the signal, that is left when a record ends, from which it need not have settled
-_LEFT = 0.03
+#: change, over the signal, that is left when a record ends, from which it need not have settled: as
+#: much as the noise of a good record
+_LEFT = 0.01
 #: revolutions from rest after which a run is near its limit that has so large a change left: near
 #: it, cuts that have settled can be two, the one from rest and the one that was entered slowly
 _NEAR, _LEFT_NEAR = 20, 0.1
@@ -34,8 +35,7 @@ class Settling(NamedTuple):
         A transient from rest would outlast the record, or dies out so slowly that another settled
         cut may be beside that from rest.
         """
-        longest = REVOLUTIONS[-1]
-        if self.revolutions < longest and change_left(self.case, self.revolutions) > _LEFT:
+        if change_left(self.case, self.revolutions) > _LEFT:
             return (
                 f"does not settle within the {self.revolutions} revolutions of the record: whether "
                 "it had settled cannot be told"

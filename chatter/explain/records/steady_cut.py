@@ -19,6 +19,8 @@ Complex = NDArray[np.complex128]
 #: revolutions of a run, and change from revolution to revolution that is settled
 REVOLUTIONS = (6, 8, 12, 18, 26, 40)
 _SETTLED = 1e-3
+#: revolutions after which any cut is taken for settled
+_LONGEST = 120
 #: revolutions that the settled one is extrapolated from, at the most, less two
 _MOST_TERMS = 4
 #: of the changes' own size, so that changes that are nothing but rounding do not matter
@@ -79,7 +81,7 @@ def revolutions_to_settle(case: Case) -> int:
 
 def change_left(case: Case, revolutions: int) -> float:
     """Change of a cut from some revolutions after rest until it is settled, over its size."""
-    scaled = _scaled(_revolutions(case, REVOLUTIONS[-1]))
+    scaled = _scaled(_revolutions(case, max(REVOLUTIONS[-1], min(2 * revolutions, _LONGEST))))
     later = scaled[min(revolutions, len(scaled) - 1)]
     size = float(np.linalg.norm(scaled[-1])) + 1e-300
     return float(np.linalg.norm(later - scaled[-1])) / size

@@ -40,31 +40,38 @@ def fit_from_elsewhere(problem: Problem, now: Fit, split: Split) -> Fit:
         return now
     level = now.cost / max(now.residuals.size, 1)
     if level < _LARGE:
-        return fit_from_declared(problem, now, split)
+        return _from_declared(problem, now, split)
     held = _with_noise(problem, np.sqrt(level))
     own = held.fit(split.fitted, now.by_name)
-    best = min((*_followed(held, own, split), own), key=_objective)
-    if _objective(best) > _BETTER * _objective(own) and own is not best:
+    best = min((*_followed(held, own, split), own), key=objective)
+    if objective(best) > _BETTER * objective(own) and own is not best:
         best = own
-    if _objective(best) > _BETTER * (now.cost / level - 2.0 * now.log_prior):
+    if objective(best) > _BETTER * (now.cost / level - 2.0 * now.log_prior):
         return now
     return problem.fit(split.fitted, best.by_name)
 
 
-def fit_from_declared(problem: Problem, now: Fit, split: Split) -> Fit:
-    """Fit with declared values put back that are out of tolerance, where that is better.
+def declared_put_back(problem: Problem, now: Fit) -> dict[str, float] | None:
+    """Values of a fit with declared ones left out, to begin at; None where all are in tolerance.
 
-    They were drawn there when the effects were not in the case, or a flat minimum held them.
+    They were drawn out of it when the effects were not in the case, or a flat minimum held them.
     """
     pulls = problem.declared_pulls(now)
     if all(abs(pull) <= OUT_OF_TOLERANCE for pull in pulls.values()):
+        return None
+    return {name: value for name, value in now.by_name.items() if name not in pulls}
+
+
+def _from_declared(problem: Problem, now: Fit, split: Split) -> Fit:
+    """Fit with declared values put back that are out of tolerance, where that is better."""
+    begin = declared_put_back(problem, now)
+    if begin is None:
         return now
-    begin = {name: value for name, value in now.by_name.items() if name not in pulls}
     back = problem.fit(split.fitted, begin)
-    return back if _objective(back) < _objective(now) else now
+    return back if objective(back) < objective(now) else now
 
 
-def _objective(found: Fit) -> float:
+def objective(found: Fit) -> float:
     """Sum of squares of residuals and of pulls."""
     return found.cost - 2.0 * found.log_prior
 

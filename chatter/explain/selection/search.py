@@ -30,7 +30,7 @@ from chatter.explain.selection.established import (
     reaches_nothing,
     stages_of_kept_effects,
 )
-from chatter.explain.selection.other_starts import fit_from_declared, fit_from_elsewhere
+from chatter.explain.selection.other_starts import declared_put_back, fit_from_elsewhere, objective
 from chatter.explain.selection.path import (
     Path,
     best_path,
@@ -206,7 +206,7 @@ def _concluded(
         path, helping = established_alone(path, split)
         path = path._replace(now=fit_from_elsewhere(path.problem, path.now, split))
         final = _of_what_is_left(path)
-    elif path.stages:
+    else:
         path, final = _without_nothing(*_from_declared(path, final, split), split)
     path = stages_of_kept_effects(path, split)
     shown = path.problem.kind.with_records_by(measurement, path.problem.case(path.now.by_name))
@@ -278,11 +278,12 @@ def _of_what_is_left(path: Path) -> Fit:
 
 def _from_declared(path: Path, final: Fit, split: Split) -> tuple[Path, Fit]:
     """Path and its fit to all runs, from declared values where that is better."""
-    now = fit_from_declared(path.problem, path.now, split)
-    if now is path.now:
+    begin = declared_put_back(path.problem, final)
+    if begin is None:
         return path, final
-    path = path._replace(now=now)
-    return path, _of_all_runs(path)
+    back = path._replace(now=path.problem.fit(split.fitted, begin))
+    found = _of_all_runs(back)
+    return (back, found) if objective(found) < objective(final) else (path, final)
 
 
 def _without_nothing(path: Path, final: Fit, split: Split) -> tuple[Path, Fit]:
