@@ -89,7 +89,8 @@ class TimeOptimalMotion:
         given = np.asarray(time, dtype=np.float64)
         starts = np.array([begin for begin, _, _ in self._parts])
         which = np.clip(np.searchsorted(starts, given, "right") - 1, 0, len(starts) - 1)
-        covered, speed, gain = np.zeros((3, *given.shape))
+        # arrays of one time too: rows of one array would be numbers, which hold no values
+        covered, speed, gain = (np.zeros(given.shape) for _ in range(3))
         for number in np.unique(which):
             begin, before, spline = self._parts[number]
             here = which == number

@@ -56,6 +56,15 @@ def test_each_axis_keeps_its_limits_and_one_is_reached():
     assert np.percentile(busy, 10) > 0.8
 
 
+@pytest.mark.parametrize(("share", "place", "speed"), [(0.0, 0.0, 0.0), (0.5, 0.15, 0.5)])
+def test_a_line_at_one_time(share, place, speed):
+    """At rest where it begins; by symmetry halfway, at the greatest speed, at half its time."""
+    motion = TimeOptimalMotion((line(0.3),), LIMITS)
+    moved = motion.at(share * motion.duration)
+    assert moved.position == pytest.approx([place, 0.0, 0.0], abs=1e-4)
+    assert moved.velocity == pytest.approx([speed, 0.0, 0.0], abs=1e-3)
+
+
 def test_velocity_is_the_derivative_of_the_position():
     motion = TimeOptimalMotion(tuple(corner()), LIMITS)
     time = np.linspace(0.0, motion.duration, 20_001)
