@@ -154,6 +154,19 @@ def test_bending_has_no_peak_in_x_and_y(machine, run, axis, way, head, bending):
     assert run.peaks_between(frf, 0.9 * bending, 1.1 * bending) == "none"
 
 
+def test_a_mass_alone_is_its_line(run):
+    lines = np.linspace(10.0, 200.0, 1901)
+    mass_alone = -1.0 / (50.0 * (2.0 * np.pi * lines) ** 2)
+    assert run.over_mass_line(run.Frf(lines, mass_alone, "receptance")) == pytest.approx(1.0)
+
+
+def test_y_is_the_line_of_the_head_up_to_100_hz(machine, run):
+    """Section 3.3 of the paper; the line is that of its 50 kg."""
+    identified = chatter.frf(run.detuned(machine), ["y_motor", "y_tcp"])
+    assert run.over_mass_line(identified["y_tcp"].tested) == pytest.approx(1.0, rel=0.06)
+    assert run.over_mass_line(identified["y_motor"].tested) == pytest.approx(1.0, rel=0.2)
+
+
 def test_the_bracket_shows_in_x(machine, run):
     along_x = run.from_motor(machine, "X", "x", 0.0)
     assert run.peaks_between(along_x, 20.0, 150.0) == "none"
