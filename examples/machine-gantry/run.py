@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import chatter
-from chatter.compile.linearised_friction import linearised_frf, rigid_motion
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
@@ -38,7 +38,8 @@ LEFT, LEFT_ON_TUBES = -0.54, -0.45
 TRANSMISSION = 0.005  # of X, m/rad of its motors
 #: published: what Y moves, kg, and up to which frequency its FRFs are the line of that mass, Hz
 HEAD_MASS, MASS_LINE = 50.0, 100.0
-BAND = np.linspace(10.0, 500.0, 2000)  # Hz
+#: test of the file for the FRF of an axis to a direction of the tool, figures 13 to 15
+TESTS = {("X", "x"): "x_tcp", ("Y", "y"): "y_tcp", ("X", "z"): "z_tcp"}
 
 
 def detuned(machine: MachineFile) -> MachineFile:
@@ -73,22 +74,21 @@ def moved_mass(machine: MachineFile) -> float:
     return float(rigid @ whole.structure.mass @ rigid) - turning
 
 
-def from_motor(machine: MachineFile, axis: str, direction: str, head: float) -> Frf:
-    """FRF from the torque (force) of an axis to the tool, loops open, the head at a place, m."""
-    whole = assembled_machine(machine, positions={"Y": head})
-    motor = np.mean([drive.row for drive in whole.drives if drive.axis == axis], axis=0)
-    tool = whole.structure.port("tcp", np.eye(3)["xyz".index(direction)])
-    values = linearised_frf(replace(whole, drives=()), machine.step, BAND, motor, tool)
-    return Frf(BAND, values, "receptance", source=f"{axis} to tool {direction}")
-
-
 def frfs_to_tool(machine: MachineFile, left: float) -> dict[tuple[str, str, str], Frf]:
     """FRFs of figures 13 to 15: axis, direction of the tool, head in the middle or at the left."""
-    return {
-        (axis, way, name): from_motor(machine, axis, way, head)
-        for axis, way in (("X", "x"), ("Y", "y"), ("X", "z"))
-        for name, head in (("middle", 0.0), ("left", left))
-    }
+    places = {"middle": 0.0, "left": left}
+    at = {name: identified_at(machine, head) for name, head in places.items()}
+    return {(*of, name): at[name][of] for of in TESTS for name in places}
+
+
+def identified_at(machine: MachineFile, head: float) -> dict[tuple[str, str], Frf]:
+    """FRFs from an axis to a direction of the tool, by multisine as in section 3.2, head at, m.
+
+    The detuned velocity controllers run: each motor of X has its own, so that they damp yaw.
+    """
+    places = {f"frf.{test}.position": {"Y": head} for test in TESTS.values()}
+    found = chatter.frf(detuned(machine).patch(places), list(TESTS.values()))
+    return {of: found[test].tested for of, test in TESTS.items()}
 
 
 def peak_near(frf: Frf, frequency: float) -> float:
