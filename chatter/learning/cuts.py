@@ -17,6 +17,7 @@ from chatter.io.headings import named
 from chatter.io.signals import read_signals
 from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import split_heading
+from chatter.learning.idle_power import with_power_understood
 from chatter.learning.records_of_cuts import ANGLE, MAGNITUDE, with_multipliers
 from dynamics.frf.container import MeasurementError
 
@@ -81,9 +82,10 @@ def with_one_run_a_reading(measurement: Measurement) -> Measurement:
             raise InputError(f"{where}: {name}, row {row}: {values[row - 1]:g} is not above 0")
     _refuse_depths_in_metres(where, run, measurement.case)
     run = with_multipliers(run, measurement.folder, measurement.case)
+    run = with_power_understood(run, measurement)
     numbered = {**run.signals, TEST: np.arange(run.signals[_NEEDED[0]].size, dtype=float)}
     run = replace(run, signals=numbered)
-    runs = [one for name in READINGS if (one := _of_reading(run, name, measurement)) is not None]
+    runs = [one for name in READINGS if (one := _of_reading(run, name)) is not None]
     if not runs:
         raise InputError(f"{where}: there is no column {', '.join(READINGS)} to learn from")
     return measurement.with_runs(runs)
@@ -101,13 +103,11 @@ def _refuse_depths_in_metres(where: Path, run: Run, case: Case) -> None:
         )
 
 
-def _of_reading(run: Run, name: str, measurement: Measurement) -> Run | None:
+def _of_reading(run: Run, name: str) -> Run | None:
     """Tests that have a reading; None if there is none."""
     if name not in run.signals:
         return None
-    signals = dict(run.signals)
-    if name == "spindle_power":
-        signals[name] = signals[name] - (measurement.idle_power or 0.0)
+    signals = run.signals
     usable = np.isfinite(signals[name])
     if name in ("chatter_frequency", "spindle_power"):
         usable &= signals[name] > 0.0

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 DEFAULT_PARTICLES, DEFAULT_RISK = 128, 0.5
 #: points of the diagram, and particles at the most that it is of
-_SPEEDS, _DEPTHS, _OF_DIAGRAM = 33, 28, 64
+_SPEEDS, _DEPTHS, _OF_DIAGRAM = 49, 28, 64
 #: deepest cut of the diagram, over the deepest test and the deepest limit that half the particles
 #: exceed
 _DEEPER, _ABOVE_MEDIAN = 1.4, 1.25
@@ -356,9 +356,7 @@ def _ranges(
         for name in ("spindle_speed", "axial_depth")
     ]
     wide = spindle_speeds(case) if case.lobes and case.lobes.speeds else tested[0]
-    speeds = np.linspace(float(wide.min()), float(wide.max()), _SPEEDS)
-    if np.ptp(speeds) == 0.0:
-        speeds = np.linspace(0.7, 1.3, _SPEEDS) * speeds[0]
+    speeds = _speeds(float(wide.min()), float(wide.max()))
     given = case.lobes.depths if case.lobes else None
     deepest = _DEEPER * float(tested[1].max())
     rough = np.geomspace(0.3 * float(tested[1].min()), 4.0 * deepest, 16)
@@ -367,6 +365,16 @@ def _ranges(
     finite = median[np.isfinite(median)]
     most = max(deepest, _ABOVE_MEDIAN * float(finite.max())) if finite.size else deepest
     return speeds, _depths(given.to if given is not None else most, finite)
+
+
+def _speeds(least: float, most: float) -> Array:
+    """Speeds of the diagram, rad/s, in equal ratios: lobes are the narrower, the slower the tool.
+
+    About one speed where all tests are at it.
+    """
+    if least == most:
+        least, most = 0.7 * least, 1.3 * most
+    return np.geomspace(least, most, _SPEEDS)
 
 
 def _depths(most: float, limits: Array) -> Array:

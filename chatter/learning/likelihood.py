@@ -13,6 +13,7 @@ from chatter.explain.kinds.stability import likely_stable, limited
 from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem
 from chatter.learning.cuts import TEST
+from chatter.learning.idle_power import IDLE_POWER, POWER
 from chatter.learning.prior import SCATTER_OF_LIMITS, Prior
 from chatter.learning.records_of_cuts import ANGLE, DEVIATION, MAGNITUDE
 
@@ -56,14 +57,17 @@ class Likelihood:
     def _predicted(self, counted: Array) -> Array:
         values = self.prior.values(counted)
         values.pop(SCATTER_OF_LIMITS)
+        idle = values.pop(IDLE_POWER, 0.0)
         try:
             case = self.problem.case(values)
-            return np.concatenate([self._of_run(case, run) for run in self.runs])
+            return np.concatenate([self._of_run(case, idle, run) for run in self.runs])
         except (InputError, RunError):
             return np.full(self.test.size, np.nan)
 
-    def _of_run(self, case, run: Run) -> Array:
+    def _of_run(self, case, idle: float, run: Run) -> Array:
         predicted = self.problem.predictions.of(case, run)
+        if run.record == POWER:
+            return predicted[POWER] + idle
         return predicted["margin" if run.record == "stable" else str(run.record)]
 
     def scatter(self, counted: Array) -> Array:

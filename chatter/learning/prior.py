@@ -22,6 +22,7 @@ from chatter.explain.kinds.stability import SCATTER
 from chatter.explain.measurement import Measurement
 from chatter.explain.parameters import KnownByFactor, Parameter
 from chatter.explain.selection.problem import Problem
+from chatter.learning.idle_power import idle_power
 
 Array = NDArray[np.float64]
 
@@ -144,13 +145,14 @@ def with_wear(problem: Problem) -> Problem:
 
 
 def prior_of(problem: Problem) -> Prior:
-    """Prior of the declared values of a problem, of its effects, and of the scatter of limits.
+    """Prior of the declared values of a problem, of its effects, scatter of limits and idle power.
 
     An effect may be absent: what wear does to process damping is told by few tests, and would be
     found where there is none.
     """
     parameters = [_with_prior(one) for one in problem.parameters()]
     parameters.append(KnownByFactor(SCATTER_OF_LIMITS, SCATTER, _SCATTER_SIZE, unit="1"))
+    parameters += idle_power(problem.measurement)
     lower = np.array([_counted(one, one.lower, -np.inf) for one in parameters])
     upper = np.array([_counted(one, one.upper, np.inf) for one in parameters])
     names = tuple(f"{effect.name}." for effect in problem.effects)

@@ -6,7 +6,7 @@ import pytest
 import chatter
 from chatter import InputError
 from chatter.learning.cuts import read_cuts
-from chatter.learning.learn import _depths
+from chatter.learning.learn import _depths, _speeds
 from tests.chatter.learning.test_learn import case_of
 
 
@@ -66,3 +66,14 @@ def test_a_cell_of_words_in_a_column_of_numbers_is_still_named(tmp_path):
     path.write_text(heading + "9000,1.5,1,0.4\n9500,2.5,0,loud\n", encoding="utf-8")
     with pytest.raises(InputError, match='line 3: level: "loud" is not a number'):
         read_cuts(path, case)
+
+
+def test_every_lobe_has_speeds_of_the_diagram():
+    """Lobes of 700 Hz and four teeth lie at 60 700/(4 k) rpm: those of k = 7 to 1 are in range."""
+    speeds = _speeds(1500.0, 10500.0)
+    assert speeds[[0, -1]] == pytest.approx([1500.0, 10500.0])
+    for number in range(1, 7):
+        slower, faster = (60.0 * 700.0 / (4.0 * k) for k in (number + 1, number))
+        assert np.sum((speeds >= 0.999 * slower) & (speeds <= 1.001 * faster)) >= 4
+    alone = _speeds(1000.0, 1000.0)
+    assert alone[[0, -1]] == pytest.approx([700.0, 1300.0])
