@@ -74,6 +74,7 @@ def receptance(
     ports: NDArray[np.float64],
     step: float,
     frictions: Mapping[str, Linearised] | None = None,
+    excited_axis: str | None = None,
 ) -> NDArray[np.complex128]:
     """Receptance between ports with drives under control and frictions linearised.
 
@@ -88,6 +89,9 @@ def receptance(
         Step of the simulation that the controllers are sampled on, s.
     frictions : mapping of str to callable, optional
         How each friction is linearised, by its name; those not named are left out.
+    excited_axis : str, optional
+        Axis whose motors together push with what the ports say, and no more: of their loops the
+        differences between the motors are left, which turn against yaw.
 
     Returns
     -------
@@ -115,6 +119,9 @@ def receptance(
     free = structure_receptance(machine, lines, rows)
     count = len(asked)
     feedback = _feedback(machine, lines, step, chosen, frictions or {})
+    excited = [index for index, drive in enumerate(drives) if drive.axis == excited_axis]
+    if excited:
+        feedback[:, excited] -= feedback[:, excited].mean(axis=1, keepdims=True)
     inner = slice(count, None)
     # u = R f + R_i F u_i: the loops see only their own ports
     loop = np.eye(feedback.shape[1]) - free[:, inner, inner] @ feedback

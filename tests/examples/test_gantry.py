@@ -165,6 +165,12 @@ def test_nothing_but_the_bracket_shows_in_x_as_identified(run, identified, head)
     assert run.peaks_between(identified["X", "x", head], 20.0, 150.0) == "none"
 
 
+def test_linearised_as_identified_where_the_motors_turn_against_yaw(machine, run):
+    """By simulation in time, the head at the left: 8 % apart with both motors' loops open."""
+    at_left = run.detuned(machine).patch({"frf.x_tcp.position": {"Y": run.LEFT}})
+    assert run.usual_difference(chatter.frf(at_left, ["x_tcp"]), "x_tcp") < 0.005
+
+
 def test_a_mass_alone_is_its_line(run):
     lines = np.linspace(10.0, 200.0, 1901)
     mass_alone = -1.0 / (50.0 * (2.0 * np.pi * lines) ** 2)

@@ -152,15 +152,13 @@ def _one_frf(
     refuse_unstable_control(machine, file.step)
     excited, read = _rows(where, machine, section)
     frequency = np.linspace(*section.band, section.lines)
-    linear = machine
     motor = parse_tested_point(section.excite).motor
-    if section.by == "torque multisine":
-        # what is identified is what the motor feels with its own loop open
-        linear = replace(machine, drives=tuple(d for d in machine.drives if d.axis != motor))
+    # what is identified is what the motors of an axis feel together, the loop of their sum open
+    opened = motor if section.by == "torque multisine" else None
     # the axis moves as its loop lets it, though the response is taken with the loop open
     frictions = linearised_frictions(machine, velocity, section.amplitude)
     rows = np.array([read, excited])
-    values = receptance(linear, frequency, rows, file.step, frictions)[:, 0, 1]
+    values = receptance(machine, frequency, rows, file.step, frictions, opened)[:, 0, 1]
     harmonic = Frf(frequency, values, "receptance", source=f"{where}, linearised")
     tested = None
     if section.by != "linearised":
