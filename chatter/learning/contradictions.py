@@ -12,6 +12,7 @@ from chatter.description.units import rpm
 from chatter.description.usual_units import UsualUnit
 from chatter.explain.measurement import Measurement, Run
 from chatter.learning.cuts import TEST
+from chatter.learning.records_of_cuts import MAGNITUDE
 
 Array = NDArray[np.float64]
 
@@ -23,6 +24,8 @@ _OTHER_CONDITIONS = ("feed_per_tooth", "radial_depth", "cut_time")
 _CLEARLY_DEEPER = 0.1
 #: probability of its verdict below which a test is no scatter of the limits
 _UNBELIEVABLE = 0.05
+#: verdicts from which it is worth saying that all are alike
+_LEAST_ALIKE = 4
 #: notes of a kind at the most; the first say what to look for
 _MOST_NOTES = 3
 
@@ -38,6 +41,27 @@ def contradictions(measurement: Measurement) -> list[str]:
         return []
     length = units_of(measurement.case).length
     return [*_of_one_cut(judged, length), *_deeper(judged, length)]
+
+
+def one_sided(measurement: Measurement) -> list[str]:
+    """Say that tests judged all alike bound the limits from one side only.
+
+    Not where the vibration of stable cuts was recorded, which says how far they are from chatter.
+    """
+    judged = _judged(measurement)
+    if judged is None or any(run.record == MAGNITUDE for run in measurement.runs):
+        return []
+    stable = judged.signals["stable"] > 0.5
+    if stable.size < _LEAST_ALIKE or np.ptp(stable.astype(float)) > 0.0:
+        return []
+    word, side, other = (
+        ("are stable", "lower", "higher") if stable[0] else ("chatter", "higher", "lower")
+    )
+    return [
+        f"all {stable.size} tests {word}: they say that limits are not {side}, not how much "
+        f"{other} they are, which is known by what is declared alone; a test that "
+        f"{'chatters' if stable[0] else 'is stable'} would tell"
+    ]
 
 
 def surprises(measurement: Measurement, probability: Array) -> list[str]:

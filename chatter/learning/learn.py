@@ -31,7 +31,7 @@ from chatter.io.result_files import (
     write_results,
 )
 from chatter.io.result_tables import Column, csv_text
-from chatter.learning.contradictions import contradictions, surprises
+from chatter.learning.contradictions import contradictions, one_sided, surprises
 from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
@@ -127,9 +127,13 @@ class Learnt(NotebookResult):
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
-        """Tests that contradict each other or what was learnt."""
+        """Tests that contradict each other or what was learnt, or that bound limits on one side."""
         probability, _ = self.probability_of_tests()
-        notes = [*contradictions(self.measurement), *surprises(self.measurement, probability)]
+        notes = [
+            *contradictions(self.measurement),
+            *surprises(self.measurement, probability),
+            *one_sided(self.measurement),
+        ]
         scatter = float(np.median(self.after.columns()[SCATTER_OF_LIMITS]))
         if scatter > _WIDE_SCATTER:
             notes.append(

@@ -3,7 +3,7 @@
 import pytest
 
 import chatter
-from chatter.learning.contradictions import contradictions
+from chatter.learning.contradictions import contradictions, one_sided
 from chatter.learning.cuts import read_cuts
 
 CASE = """
@@ -80,3 +80,18 @@ def test_a_verdict_that_the_learnt_case_does_not_believe_is_named(tmp_path):
     (told,) = [note for note in found.notes if note.startswith("test 2, stable at 40 mm")]
     assert "check its verdict and its units" in told
     assert list(found.notes) == found.summary()["notes"]
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "said"),
+    [
+        ("1111", "all 4 tests are stable: they say that limits are not lower, not how much higher"),
+        ("0000", "all 4 tests chatter: they say that limits are not higher, not how much lower"),
+        ("1101", None),
+        ("11", None),
+    ],
+)
+def test_verdicts_all_alike_bound_limits_from_one_side(tmp_path, verdicts, said):
+    rows = [f"{3000 + 500 * k},{1 + k},{verdict}" for k, verdict in enumerate(verdicts)]
+    told = one_sided(measured(tmp_path, *rows))
+    assert [note[: len(said or "")] for note in told] == ([said] if said else [])
