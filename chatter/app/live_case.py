@@ -21,7 +21,7 @@ from chatter.stability.neglected_effects import NeglectedEffect, deciding, notes
 from chatter.stability.pockets import Pocket
 from chatter.stability.pockets_of_limits import pockets_of_limits
 from chatter.stability.registry import chosen_method, fixed_steps
-from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
+from chatter.stability.search_range import beyond_the_cut, known_to, maximum_depth, spindle_speeds
 
 #: stage -> speeds, depths of the grid
 STAGES = {"coarse": (96, 24), "fine": (200, 50)}
@@ -112,7 +112,9 @@ class LiveCase:
         crossings, curve = at_cut.crossings[0], with_limits_between(curve, at_cut)
         depth = cut.axial_depth
         stable = int((crossings < depth).sum()) % 2 == 0
-        certain = not deciding(neglected, depth, crossings, deepest, stable=stable)
+        zero_order = zero_order_of(drawn.model, np.array([cut.spindle_speed]))
+        known = known_to(deepest, zero_order)
+        certain = not deciding(neglected, depth, crossings, known, stable=stable)
         return {
             "stage": drawn.stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),

@@ -24,6 +24,7 @@ from chatter.stability.limit_curve import with_limits_between
 from chatter.stability.neglected_effects import highest_factor, lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
+from chatter.stability.search_range import known_to
 
 if TYPE_CHECKING:
     from chatter.description.sections.cut import Cut
@@ -275,7 +276,7 @@ def _searched(diagram: StabilityDiagram, left: IntegerArray, share: Array) -> Ar
 def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
     """Hatch, about each limit, how far edge forces that are left out may lower or raise it.
 
-    As `deciding` judges a point: of a limit that was not found it is known where the search ended.
+    As `deciding` judges a point: of a limit that was not found it is known above what it lies.
     """
     effects = diagram.neglected_at_all_speeds
     low, high = lowest_factor(effects), highest_factor(effects)
@@ -291,7 +292,9 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
         between = [
             _between(diagram.limits.crossings, *one) for one in zip(left, share, strict=True)
         ]
-        bands = _not_certain(between, _searched(diagram, left, share), low, high)
+        searched = _searched(diagram, left, share)
+        known = np.array([known_to(one, diagram.zero_order) for one in searched.tolist()])
+        bands = _not_certain(between, known, low, high)
     factor = diagram.units.length.factor
     for number, (first, last) in enumerate(bands):
         axes.fill_between(
@@ -303,16 +306,16 @@ def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float
 
 
 def _not_certain(
-    crossings: Sequence[Array], searched: Array, low: float, high: float
+    crossings: Sequence[Array], known: Array, low: float, high: float
 ) -> list[tuple[Array, Array]]:
     """Bands (lower and upper ends, m, nan where there is none) about limits that may be elsewhere.
 
     A limit at which stability is lost lies between the factors `low` and `high` of itself; the
-    limits next to it bound the band. One that was not found lies beyond the depth searched, m.
+    limits next to it bound the band. One that was not found lies above a known depth, m.
     """
     crossings = [
         found if len(found) % 2 else np.append(found, end)
-        for found, end in zip(crossings, searched, strict=True)
+        for found, end in zip(crossings, known, strict=True)
     ]
     bands = []
     for index in range(0, max((len(found) for found in crossings), default=0), 2):

@@ -53,7 +53,7 @@ from chatter.stability.registry import (
     with_multiplier,
 )
 from chatter.stability.resting_friction import neglected_resting_friction
-from chatter.stability.search_range import depths_at_one_speed
+from chatter.stability.search_range import depths_at_one_speed, known_to
 from chatter.stability.stability_method import Multiplier, StabilityMethod
 from chatter.stability.steady_flank import about_steady_motion
 from cutting.edge_segments.segments import period_angle
@@ -84,6 +84,8 @@ class StabilityCheck(NotebookResult):
         At the operating speed alone.
     max_depth : float
         Maximum axial depth searched, m.
+    known_to : float
+        Depth, m, above which a limit lies that was not found.
     zero_order_depth : float
         Limit by the zeroth-order solution, m.
     notes : tuple of str
@@ -99,6 +101,7 @@ class StabilityCheck(NotebookResult):
     chatter_frequency: float
     limit: LimitCurve
     max_depth: float
+    known_to: float
     zero_order_depth: float
     notes: tuple[str, ...] = ()
     neglected: tuple[NeglectedEffect, ...] = ()
@@ -139,7 +142,7 @@ class StabilityCheck(NotebookResult):
     def deciding(self) -> tuple[NeglectedEffect, ...]:
         """What the linear analysis leaves out and could turn its verdict; empty where it stands."""
         depth, crossings = self.case.cut.axial_depth, self.limit.crossings[0]
-        return deciding(self.neglected, depth, crossings, self.max_depth, stable=self.stable)
+        return deciding(self.neglected, depth, crossings, self.known_to, stable=self.stable)
 
     @property
     def verdict(self) -> str:
@@ -157,7 +160,7 @@ class StabilityCheck(NotebookResult):
         factor = lowest_factor(self.neglected)
         if factor == 1.0:
             return self.critical_depth
-        return factor * min(self.critical_depth, self.max_depth)
+        return factor * min(self.critical_depth, self.known_to)
 
     @property
     def bifurcation(self) -> str:
@@ -247,8 +250,8 @@ class StabilityCheck(NotebookResult):
         if not 0.0 < low < depth:
             return ""
         if not np.isfinite(limit):
-            searched = f"{factor * self.max_depth:.4g} {unit}"
-            return f", to {factor * low:.3g} {unit} of a limit that lies above {searched}"
+            above = f"{factor * self.known_to:.4g} {unit}"
+            return f", to {factor * low:.3g} {unit} of a limit that lies above {above}"
         return f", from {factor * limit:.4g} to {factor * low:.3g} {unit}"
 
     def rows(self) -> list[list[str]]:
@@ -422,6 +425,7 @@ def check(
         chatter_frequency=frequency,
         limit=limit,
         max_depth=float(depths[-1]),
+        known_to=known_to(float(depths[-1]), zero_order),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
             *question_of_spectral_radius(radius ** (1.0 / _teeth_of_period(model))),

@@ -31,7 +31,7 @@ from chatter.stability.neglected_effects import (
     reasons_of,
 )
 from chatter.stability.pockets import SPEED_MARGIN, Pocket, depth_margin
-from chatter.stability.search_range import beyond_the_cut
+from chatter.stability.search_range import beyond_the_cut, known_to
 
 #: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
@@ -256,8 +256,8 @@ class StabilityDiagram(SavedResult):
         """Depth, m, below which any speed is stable: what edge forces and friction leave of it."""
         factor = self.resting_friction * lowest_factor(self.neglected_at_all_speeds)
         if factor < 1.0 and not math.isfinite(self.lowest.critical_depth):
-            # of a limit that was not found no more is known than that it lies beyond the search
-            return float(self.max_depth[0]) * factor
+            # of a limit that was not found no more is known
+            return known_to(float(self.max_depth[0]), self.zero_order) * factor
         return self.lowest.critical_depth * factor
 
     @property
@@ -265,7 +265,8 @@ class StabilityDiagram(SavedResult):
         """What is left out and could turn the linear verdict on the operating point."""
         depth, crossings = self.case.cut.axial_depth, self.operating.crossings[0]
         stable = self.operating_is_stable
-        return deciding(self.neglected, depth, crossings, self._searched, stable=stable)
+        known = known_to(self._searched, self.zero_order)
+        return deciding(self.neglected, depth, crossings, known, stable=stable)
 
     @property
     def why_not_certain(self) -> str:

@@ -63,7 +63,7 @@ def deciding(
     effects: Sequence[NeglectedEffect],
     depth: float,
     crossings: Array,
-    searched: float,
+    known: float,
     *,
     stable: bool,
 ) -> tuple[NeglectedEffect, ...]:
@@ -76,14 +76,14 @@ def deciding(
         Axial depth of the cut, m.
     crossings : (n,) array of float
         Linear limits at its speed, m, rising.
-    searched : float
-        Depth, m, to which limits were searched: of one beyond it no more is known.
+    known : float
+        Depth, m, above which a limit lies that was not found.
     stable : bool
         The linear verdict.
     """
     if stable:
         above = [limit for limit in crossings if limit > depth]
-        limit = above[0] if above else max(searched, depth)
+        limit = above[0] if above else max(known, depth)
         if depth < limit * lowest_factor(effects):
             return ()
         return tuple(effect for effect in effects if effect.lowest < 1.0)

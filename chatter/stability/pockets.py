@@ -41,13 +41,15 @@ def find_pockets(
     removal_rate_per_depth_and_speed: float,
     most: int = 5,
     depth_margin: float = DEPTH_MARGIN,
+    known_to: float = 0.0,
 ) -> tuple[Pocket, ...]:
     """Find the pockets with the highest removal rate, the highest first, `most` of them.
 
     Critical depths (n,), m, inf where none was found, at speeds (n,), rad/s, ascending; no pocket
     is deeper than `max_depth`, m, to which was searched. The removal rate over depth and speed,
     m^2, has radial depth, teeth and feed per tooth in it. The depth margin is the part of the limit
-    that is kept in hand. A depth that is stable at every speed is no pocket.
+    that is kept in hand; one that was not found lies above `known_to`, m. A depth that is stable at
+    every speed is no pocket.
     """
     lowest, kept = limits.min(), 1.0 - depth_margin
     if not kept > 0.0:
@@ -56,17 +58,18 @@ def find_pockets(
     lowest = lowest * min(1.0, kept / (1.0 - DEPTH_MARGIN))
     # of limits that are alike everywhere, any speed is as good
     anywhere = -np.inf if not lowest < np.max(limits) else lowest
-    robust = lowest_within_margin(speeds, np.minimum(limits, max_depth))
+    beyond = min(kept * max(known_to, max_depth), (1.0 - DEPTH_MARGIN) * max_depth)
+    robust = lowest_within_margin(speeds, np.where(limits <= max_depth, kept * limits, beyond))
     indices = _local_maxima(robust)
     pockets = [
         Pocket(
             float(speeds[i]),
-            float(kept * robust[i]),
+            float(robust[i]),
             float(limits[i]) if limits[i] <= max_depth else np.inf,
-            float(kept * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
+            float(robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
         for i in indices
-        if kept * robust[i] > anywhere
+        if robust[i] > anywhere
     ]
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 

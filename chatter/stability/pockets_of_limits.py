@@ -15,6 +15,7 @@ from chatter.stability.resting_friction import (
     limits_with_resting_friction,
     neglected_resting_friction,
 )
+from chatter.stability.search_range import known_to
 from chatter.stability.stability_method import StabilityMethod
 
 
@@ -49,5 +50,7 @@ def pockets_of_limits(
     at_rest = limits_with_resting_friction(model, here)
     area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
     bounded = at_rest.bounded(limits.critical_depth)
-    pockets = find_pockets(speeds, bounded, max_depth, area, depth_margin=margin)
+    pockets = find_pockets(
+        speeds, bounded, max_depth, area, depth_margin=margin, known_to=known_to(max_depth, here)
+    )
     return PocketsOfLimits(pockets, neglected, at_rest.of_lowest)

@@ -53,6 +53,14 @@ def beyond_the_cut(case: Case, max_depth: float) -> float:
     return min(max(max_depth, _BEYOND * case.cut.axial_depth), case.tool.depth_that_tool_allows)
 
 
+def known_to(searched: float, zero_order: ZeroOrderLimit | None) -> float:
+    """Depth, m, above which a limit lies that was not found up to the depth searched.
+
+    No deeper than the tool can cut was searched; the lowest zeroth-order limit lies where it lies.
+    """
+    return searched if zero_order is None else max(searched, zero_order.lowest_depth)
+
+
 def axial_depths(case: Case, max_depth: float) -> Array:
     """Depths of the grid and the grid, m, ascending, > 0."""
     wanted = case.lobes.depths if case.lobes else None
