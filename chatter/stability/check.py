@@ -157,10 +157,9 @@ class StabilityCheck(NotebookResult):
 
         Of a limit that was not found no more is known than that it lies beyond the search.
         """
-        factor = lowest_factor(self.neglected)
-        if factor == 1.0:
-            return self.critical_depth
-        return factor * min(self.critical_depth, self.known_to)
+        low = lowest_factor(self.neglected) * min(self.critical_depth, self.known_to)
+        is_beyond = not np.isfinite(self.critical_depth) and low >= self.max_depth
+        return self.critical_depth if is_beyond else low
 
     @property
     def bifurcation(self) -> str:

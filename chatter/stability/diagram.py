@@ -255,10 +255,12 @@ class StabilityDiagram(SavedResult):
     def lowest_depth(self) -> float:
         """Depth, m, below which any speed is stable: what edge forces and friction leave of it."""
         factor = self.resting_friction * lowest_factor(self.neglected_at_all_speeds)
-        if factor < 1.0 and not math.isfinite(self.lowest.critical_depth):
-            # of a limit that was not found no more is known
-            return known_to(float(self.max_depth[0]), self.zero_order) * factor
-        return self.lowest.critical_depth * factor
+        if math.isfinite(self.lowest.critical_depth):
+            return self.lowest.critical_depth * factor
+        # of a limit that was not found no more is known
+        deepest = float(self.max_depth[0])
+        low = known_to(deepest, self.zero_order) * factor
+        return low if low < deepest else self.lowest.critical_depth
 
     @property
     def deciding(self) -> tuple[NeglectedEffect, ...]:

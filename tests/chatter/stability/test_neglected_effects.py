@@ -203,3 +203,15 @@ def test_simulate_names_the_other_verdict_and_the_number_that_decides(case_file,
     assert f"may lower the limit by {share:.0%}" in result.stdout
     deep = chatter_command("simulate", str(case_file), "--set", "cut.axial_depth=1 mm", *out)
     assert "the linear analysis agrees" in deep.stdout
+
+
+def test_no_depth_beyond_the_search_is_stated(case_file):
+    """An end mill with 6 mm of flutes was said to be stable below 7.39 mm."""
+    stiff = {f"structure.mode[{name}].stiffness": "1000 N/um" for name in ("0", "1")}
+    case = chatter.load(case_file).patch({"tool.flute_length": "6 mm", **stiff})
+    found = chatter.check(case)
+    assert found.neglected
+    assert found.verdict == "stable"
+    assert found.lowest_depth == math.inf
+    assert chatter.lobes(case).summary()["lowest_limit"]["stable_below_mm"] is None
+    assert not any("at least" in row[0] for row in found.rows())

@@ -21,9 +21,9 @@ from chatter.stability.spindle_rotation import speed_at, swing_range, time_near
 _LONGEST_ANGLE = 0.9
 #: element lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
-#: of more intervals or elements than these, or where the speed varies, elements are counted in
-#: steps of the speed, in powers of two
-_FEW_INTERVALS, _FEW_ELEMENTS = 12, 12
+#: of more intervals than these, or where the speed varies, elements are counted in steps of the
+#: speed, in powers of two
+_FEW_INTERVALS = 12
 _STEP_OF_MANY = 0.25
 #: by which a depth may shorten the waves: far above any limit, so that it needs no finer elements
 _MOST_STIFFENED = 10.0
@@ -87,22 +87,12 @@ def _wavelengths(arrays, speed, depth):
 @njit(**INNER_KERNEL)
 def element_counts(cut, borders, rotation, speed, depth):
     """Elements (I,) that each interval needs at a mean speed (rad/s), in every tool period."""
+    arrays = cut.arrays
     counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
-    many = counts.shape[0] > _FEW_INTERVALS or rotation.amplitude > 0.0
-    if not many:
-        _count_elements(cut, borders, rotation, speed, depth, counts)
-        many = counts.sum() > _FEW_ELEMENTS
-    if many:
+    if counts.shape[0] > _FEW_INTERVALS or rotation.amplitude > 0.0:
         # one of so many would change its number at every speed, and nothing could be shared
         speed = speed_step(speed, _STEP_OF_MANY)
-        _count_elements(cut, borders, rotation, speed, depth, counts)
-    return counts
-
-
-@njit(**INNER_KERNEL)
-def _count_elements(cut, borders, rotation, speed, depth, counts):
-    """Set counts (I,) to the elements that each interval needs at a mean speed (rad/s)."""
-    wavelengths = _wavelengths(cut.arrays, speed, depth)
+    wavelengths = _wavelengths(arrays, speed, depth)
     for i in range(counts.shape[0]):
         counts[i] = 1
         if borders.engaged[i] == 1:
@@ -110,6 +100,7 @@ def _count_elements(cut, borders, rotation, speed, depth, counts):
             span = _longest_span(rotation, end - start) / speed
             need = max(span * wavelengths / cut.longest, (end - start) / _LONGEST_ANGLE)
             counts[i] = max(1, math.ceil(need - 1e-9))
+    return counts
 
 
 @njit(**LEAF_KERNEL)
